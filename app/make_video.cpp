@@ -64,7 +64,7 @@ FilmOrder order_of(const VideoOptions& options, double text_scale) {
 void say_without_effect(const VideoOptions& options, std::size_t runs) {
   const auto say = [](const std::string& what) { fmt::print(stderr, "limpid: {}\n", what); };
   if (!options.rerun.empty() && runs > 1) {
-    say(fmt::format("--rerun: shows the first run and its re-run; {} not shown",
+    say(fmt::format("--rerun: shows only the first run and its re-run; {} not shown",
                     runs == 2 ? "the second run is" : "further runs are"));
     return;
   }

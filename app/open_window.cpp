@@ -39,13 +39,13 @@ void add(CLI::App& command, WindowOptions& options) {
       .add_option_function<std::string>(
           "--listen",
           [&options](const std::string& name) { options.listen = name.empty() ? "control" : name; },
-          "let programs of this user lead the window, through the socket "
+          "let programs of this user control the window, through the socket "
           "$XDG_RUNTIME_DIR/limpid/NAME.control; default: control. See `limpid serve`")
       ->type_name("[NAME]")
       ->expected(0, 1);
   command.add_flag("--until-eof", options.desktop.until_eof,
-                   "with --listen: end when standard input ends, as it does when the calling "
-                   "program ends, and keep no settings");
+                   "with --listen: end when standard input ends (it ends with the calling "
+                   "program), and store no settings");
   command.add_flag("--print-state", options.desktop.print_state,
                    "print the state as one line of JSON, ten times per second");
 }
@@ -111,7 +111,7 @@ int open_window(const WindowOptions& options) {
     desktop.files.push_back(*table);
   } else if (!options.session.empty()) {
     if (read_session(options.session).size() == 0) {
-      throw FileError(options.session + ": holds no rows");
+      throw FileError(options.session + ": contains no rows");
     }
     desktop.session = options.session;
   }
@@ -123,16 +123,17 @@ int open_window(const WindowOptions& options) {
 void check_no_world(const InputOptions& input) {
   if (!input.device.empty() || !input.scene.empty() || input.set_parameters()) {
     throw UsageError(
-        "--video: shows the session as it was recorded; arm, scene and parameters are for the "
-        "window (`limpid run --hand SESSION.h5` runs it again under others)");
+        "--video: shows the session as it was recorded; arm, scene and parameters can be given "
+        "only for the window (`limpid run --hand SESSION.h5` runs the session again with other "
+        "settings)");
   }
 }
 
 int play(const WindowOptions& options, const MakeVideo& make_video) {
   if (options.video.out.empty()) return open_window(options);
   check_no_world(options.input);
-  if (!options.listen.empty()) throw UsageError("--listen: is of the window");
-  if (options.desktop.print_state) throw UsageError("--print-state: is of the window");
+  if (!options.listen.empty()) throw UsageError("--listen: is an option of the window");
+  if (options.desktop.print_state) throw UsageError("--print-state: is an option of the window");
   return make_video(options.session, options.video, options.desktop.ui_scale);
 }
 
@@ -146,18 +147,19 @@ WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
       ->transform(or_shipped({"scenes", "devices", "sessions", "stories"}), "", "")
       ->type_name("");
   add(app, *options);
-  auto* command =
-      app.add_subcommand("play", "the desktop app, playing a recorded session; or its video");
+  auto* command = app.add_subcommand(
+      "play", "opens the desktop app and plays a recorded session, or makes its video");
   auto played = std::make_shared<WindowOptions>();
-  command->add_option("SESSION.h5", played->session, "the recording; or a sweep's table")
+  command->add_option("SESSION.h5", played->session, "the recording, or a sweep's table")
       ->transform(or_shipped({"sessions"}), "", "")
       ->type_name("")
       ->required();
   played->video.add(*command);
   add(*command, *played);
   command->footer(
-      "A video is drawn picture by picture, without a display. It grows as OUT.part and gets its "
-      "name\nat the end; Ctrl-C leaves nothing of it. --ui-scale is the size of its text.");
+      "A video is drawn picture by picture, without a display. It is written as OUT.part and gets "
+      "its\nfinal name at the end; Ctrl-C deletes it. --ui-scale is the size of the text in the "
+      "video.");
   return {[options, &app] {
             for (const CLI::App* each : shown_commands(app))
               options->commands.push_back(each->get_name());
@@ -166,7 +168,7 @@ WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
           [options, played, make_video = std::move(make_video)] {
             if (!options->files.empty()) {
               throw UsageError(fmt::format(
-                  "\"{}\" stands before the command play; needed: play first, then files",
+                  "\"{}\" stands before the command play; needed: first play, then files",
                   options->files.front()));
             }
             return play(both(*options, *played), make_video);

@@ -37,13 +37,13 @@ void check_order(const CLI::App& app, const CLI::App& command) {
     const std::string name = option->get_name();
     if (name == "FILE") {
       throw UsageError(
-          fmt::format("\"{0}\": not expected before {1}; `limpid {1} --help` says what "
-                      "that takes, `limpid {0}` would open a file of this name",
+          fmt::format("\"{0}\" must not stand before the command {1}; `limpid {1} --help` lists "
+                      "its options; `limpid {0}` would open a file with this name",
                       option->results().front(), command.get_name()));
     }
     if (command.get_option_no_throw(name) == nullptr) {
-      throw UsageError(
-          fmt::format("{}: is of the window, and limpid {} opens none", name, command.get_name()));
+      throw UsageError(fmt::format("{}: is an option of the window, and limpid {} opens no window",
+                                   name, command.get_name()));
     }
     throw UsageError(fmt::format("{0}: stands before the command; write limpid {1} {0} ...", name,
                                  command.get_name()));
@@ -131,12 +131,11 @@ int run_program(int argc, char** argv, const VideoMakers& videos) {
         return videos.of_session(session, options, text_scale, argv);
       });
   app.footer(
-      "Without a command: the desktop app. `limpid COMMAND --help` says more about each.\n"
-      "Exit status: 0 done; 1 the run failed, became unstable, or was stopped (Ctrl-C); 2 wrong "
-      "usage "
-      "or bad input. `serve` is stopped with Ctrl-C, and ends with 0; `doctor` says its own.\nA "
-      "run that is whole and gave energy ends with 0, and with a warning that its "
-      "recording keeps.");
+      "Without a command, the desktop app starts. `limpid COMMAND --help` says more about a "
+      "command.\nExit status: 0 done; 1 the run failed, became unstable, or was stopped (Ctrl-C); "
+      "2 wrong usage or bad input. `serve` is stopped with Ctrl-C, and ends with 0; `doctor "
+      "--help` lists the exit statuses of `doctor`.\nA complete run that gave energy ends with 0, "
+      "and with a warning; the recording keeps this warning.");
   refuse_empty_values(app);
   for_each_command(app, [&](CLI::App& command) {
     command.set_version_flag("-V,--version", version);

@@ -15,7 +15,7 @@ const char* explain(NoForce reason) {
     case NoForce::watchdog: return "the device's own watchdog has cut the force";
     case NoForce::software: return "the device's own software has switched the force off";
     case NoForce::connection: return "the device's connection was interrupted";
-    case NoForce::dead_man: return "nobody holds the dead-man switch";
+    case NoForce::dead_man: return "nobody holds the device's safety switch (dead-man switch)";
     case NoForce::warm: return "the device's motors are too warm";
     case NoForce::other: return "the device gives no reason";
   }

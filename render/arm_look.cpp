@@ -212,7 +212,7 @@ Model read(const std::string& file, const LoadProgress& progress) {
   Model model = load_model_file(file, progress);
   const Bounds box = model.bounds();
   if (model.indices.empty() || box.isEmpty() || !(box.diagonal().norm() > 0)) {
-    throw std::runtime_error(file + ": nothing to see in it");
+    throw std::runtime_error(file + ": the model has nothing that can be shown");
   }
   return model;
 }
@@ -232,7 +232,7 @@ std::map<std::string, Model> read_models(ArmDescription& arm, const LoadProgress
     } catch (const LoadCancelled&) {
       throw;
     } catch (const std::exception& e) {
-      arm.warnings.push_back(std::string(e.what()) + "; a plain shape stands for it");
+      arm.warnings.push_back(std::string(e.what()) + "; a plain shape is shown instead");
     }
   }
   return models;
@@ -248,7 +248,7 @@ void say_z_up(ArmDescription& arm, const std::set<std::string>& files) {
   }
   if (named > 3) names += " and " + std::to_string(named - 3) + " more";
   arm.warnings.push_back(names + (named == 1 ? " has" : " have") +
-                         " z up, where glTF says y up: not turned, because " +
+                         " z up, but glTF says y up: no rotation is applied, because " +
                          (named == 1 ? "the picture fits the link" : "the pictures fit the links") +
                          " as " + (named == 1 ? "it is" : "they are"));
 }

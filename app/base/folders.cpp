@@ -18,7 +18,7 @@ fs::path data_dir() {
     const fs::path data = folder / "share/limpid";
     if (fs::exists(data / "assets/devices/omni.urdf", none)) return fs::canonical(data);
   }
-  throw std::runtime_error("limpid's assets are in no folder share/limpid above " +
+  throw std::runtime_error("Limpid's data files were not found: no folder share/limpid above " +
                            program.string() +
                            "; install it again, or build it again where its sources are now");
 }

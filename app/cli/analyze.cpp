@@ -44,7 +44,7 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   const auto list = [](const std::vector<double>& values) {
     return fmt::format("{:.4g}", fmt::join(values, ", "));
   };
-  fmt::print("rests on                   {}\n", basis_text(arm, p));
+  fmt::print("computed from              {}\n", basis_text(arm, p));
   if (const std::string filed = readings_text(arm, p); !filed.empty()) {
     fmt::print("readings                   {}; --readings takes the values of the arm's file\n",
                filed);
@@ -58,25 +58,30 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
              : *known.passive ? "passive"
                               : "NOT passive",
              known.by);
-  fmt::print("eta_min, all frequencies   {:.4f}   (25), of the proposed law alone\n", a.eta_min);
-  if (a.eta_min_band) fmt::print("eta_min, the band alone    {:.4f}\n", *a.eta_min_band);
-  fmt::print("eta_min, in this grip      {:.4f}   (Routh; below it the proposed law is unstable)\n",
-             a.eta_min_grip);
+  fmt::print("eta_min, all frequencies   {:.4f}   equation (25), for the proposed law only\n",
+             a.eta_min);
+  if (a.eta_min_band) fmt::print("eta_min, in the band       {:.4f}\n", *a.eta_min_band);
   fmt::print(
-      "eta_min, coupling's spring {:.4f}   (the same, with the proxy behind k_vc and b_vc)\n",
+      "eta_min, in this grip      {:.4f}   (Routh; below this eta the proposed law is unstable)\n",
+      a.eta_min_grip);
+  fmt::print(
+      "eta_min, coupling's spring {:.4f}   (as above, with k_vc and b_vc between device and "
+      "proxy)\n",
       a.eta_min_compliant);
   if (a.condition3.known) {
     fmt::print("condition (3)              {}   margins: device {:.4g}, proxy {:.4g} {}\n",
-               a.condition3.holds ? "holds" : "BROKEN", unit.many * a.condition3.device_margin,
+               a.condition3.holds ? "is met" : "BROKEN", unit.many * a.condition3.device_margin,
                unit.many * a.condition3.proxy_margin, unit.name);
   } else {
     fmt::print(
-        "condition (3)              no bound is known because packets are lost (link.loss)\n");
+        "condition (3)              no limit is known because packets are lost (link.loss)\n");
   }
   if (!p.linked()) return;
   const std::string old =
-      a.condition3.known ? fmt::format("up to {:.4g} ms old each way, as (3) has it", 1e3 * a.link)
-                         : "packets are lost, so the newest that arrived may be of any age";
+      a.condition3.known
+          ? fmt::format("packets up to {:.4g} ms old in each direction, as in condition (3)",
+                        1e3 * a.link)
+          : "packets are lost, so the newest packet that arrived may have any age";
   fmt::print("link                       {}; {}\n", old, info(p.kind).through_link);
 }
 
@@ -85,19 +90,20 @@ constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]
 void print(const TipLimits& tip, const Parameters& p, bool all) {
   const std::vector<CouplingKind> told = laws_told(p.kind, all);
   fmt::print(
-      "\nat the tip: {:.3g} g, {:.3g} N s/m of its own damping; {:.3g} g if a hand leads it\n",
+      "\nat the tip: mass {:.3g} g, own damping {:.3g} N s/m; mass {:.3g} g if a hand moves the "
+      "tip\n",
       1e3 * tip.tip.mass, tip.tip.damping, 1e3 * tip.tip.led);
   for (const CouplingKind kind : told) {
     const TipWall& wall = tip.wall(kind);
     fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", name(kind), wall.stiffness, wall.bound);
   }
   fmt::print(
-      "stiffest wall, in any hand {:>6.0f} N/m  a plain spring, passive up to b_d/(T/2 + delay) "
-      "(Colgate and Schenkel)\n",
+      "stiffest wall, in any hand {:>6.0f} N/m  for a wall that is a simple spring: b_d/(T/2 + "
+      "delay) (Colgate and Schenkel)\n",
       tip.every_hand);
   if (tip.scene > 0) fmt::print("stiffest in the scene      {:>6.0f} N/m\n", tip.scene);
-  if (const std::string late = late_text(tip, p); !late.empty()) {
-    fmt::print("eta, predictive            {}\n", late);
+  if (const std::string less = less_added_text(tip, p); !less.empty()) {
+    fmt::print("eta, predictive            {}\n", less);
   }
   fmt::print("\nfelt in free motion     ");
   for (const CouplingKind kind : told) fmt::print(" {:>20}", name(kind));
@@ -257,32 +263,33 @@ int analyze_command(const AnalyzeOptions& options) {
 }  // namespace
 
 Command declare_analyze(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "analyze",
-      "computes eta_min, stable walls and what is felt under each law, without simulation");
+  auto* command = app.add_subcommand("analyze",
+                                     "computes eta_min, the stiffest stable wall, and the inertia "
+                                     "and damping felt, for each law, without simulation");
   auto options = std::make_shared<AnalyzeOptions>();
   options->input.add_world(*command);
   options->input.add_readings(*command);
   options->input.add_parameters(*command);
   auto* band = command
                    ->add_option("--band", options->band,
-                                "up to this frequency a hand moves; eta_min is computed for "
+                                "highest frequency of the hand's motion; eta_min is computed for "
                                 "motions up to this frequency")
                    ->type_name("HZ");
-  auto* mass = command
-                   ->add_option("--mass", options->mass,
-                                "a scalar inertia in place of the arm's inertia in the rest pose; "
-                                "hand.stiffness and hand.damping then count in N m/rad and N m "
-                                "s/rad")
-                   ->type_name("KG_M2");
-  auto* grip = command
-                   ->add_option("--grip", options->grip,
-                                "a range of hand stiffness, with hand.damping and hand.mass: shows "
-                                "walls that are stable in all these hands, walls that are passive "
-                                "in every hand, named bounds, and Llewellyn's criterion")
-                   ->type_name("FROM TO")
-                   ->expected(2)
-                   ->excludes(mass);
+  auto* mass =
+      command
+          ->add_option("--mass", options->mass,
+                       "a scalar inertia in place of the arm's inertia in the rest pose; "
+                       "hand.stiffness and hand.damping then have the units N m/rad and N m s/rad")
+          ->type_name("KG_M2");
+  auto* grip =
+      command
+          ->add_option("--grip", options->grip,
+                       "a range of hand stiffness, with hand.damping and hand.mass: shows walls "
+                       "that are stable in all these hands, walls that are passive in every hand, "
+                       "bounds from publications, and Llewellyn's criterion")
+          ->type_name("FROM TO")
+          ->expected(2)
+          ->excludes(mass);
   command
       ->add_option(
           "--grip-of", options->grip_of,
@@ -300,8 +307,9 @@ Command declare_analyze(CLI::App& app) {
   require_above_zero(band, 1e6, "Hz");
   require_above_zero(grip, 1e6, "N/m");
   require_above_zero(mass, 1e6, "kg m^2");
-  command->add_flag("--all", options->all,
-                    "print the laws for comparison as well; JSON always has these laws");
+  command->add_flag(
+      "--all", options->all,
+      "also print the laws that are only for comparison; JSON always contains these laws");
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(parameter_help());
   return [options] { return analyze_command(*options); };

@@ -88,7 +88,7 @@ Source of_device(const CharacterizeOptions& options) {
   const FoundDevice& found = *hub.present();
   if (found.kind->leads_hand) {
     throw UsageError(found.place.id +
-                     ": this device only leads the hand of the virtual arm and gives no force");
+                     ": this device only moves the hand of the virtual arm and gives no force");
   }
   const OnlyLooked device(hub.open_to_look(), std::make_shared<DeviceSeen>());
   std::optional<ArmDescription> named;
@@ -122,7 +122,11 @@ KnownNumber encoder_number(const Source& source, const InputOptions& input, Para
 }
 
 KnownNumber delay_number(const Source& source, const InputOptions& input, Parameters& p) {
-  KnownNumber number{"delay", "delay from a reading to its torque, besides the tick", "ms", 0, {}};
+  KnownNumber number{"delay",
+                     "delay from a reading to the torque computed from it, in addition to the tick",
+                     "ms",
+                     0,
+                     {}};
   if (sets(input, &DeviceSettings::device_delay, 1, 2)) {
     number.from = "set";
     return number;
@@ -140,7 +144,7 @@ KnownNumber delay_number(const Source& source, const InputOptions& input, Parame
     p.device_delay = kUsualDelay;
     number.assumed = true;
     number.from =
-        "one tick is assumed, as the delay was never measured; limpid identify measures it";
+        "one tick is assumed, as the delay was never measured; limpid identify measures the delay";
   } else {
     number.assumed = true;
     number.from = "no delay; --set device.delay=TICKS sets a delay";
@@ -234,8 +238,10 @@ void print_table(const Characterized& subject, const Characterization& found) {
 // Refuses what would have no effect: all laws are measured, in hands of the bench's own.
 void refuse_what_is_fixed(const InputOptions& input) {
   const auto refuse = [](const char* what) {
-    throw UsageError(fmt::format(
-        "{}: cannot be chosen here: characterize measures every law, with fixed hands", what));
+    throw UsageError(
+        fmt::format("{}: cannot be chosen here: characterize measures every law, with simulated "
+                    "hands that are always the same",
+                    what));
   };
   if (input.coupling) refuse("--coupling");
   if (sets(input, &ControllerSettings::kind, CouplingKind::standard, CouplingKind::tank)) {
@@ -262,7 +268,7 @@ int run_characterize(const CharacterizeOptions& options) {
   lab_options.stop = &interrupted;
   Characterization found;
   try {
-    Progress progress({.title = "characterize", .whole = 100, .unit = "", .rate = "% a second"});
+    Progress progress({.title = "characterize", .whole = 100, .unit = "", .rate = "% per second"});
     lab_options.progress = [&](double part) { progress.at(100 * part); };
     TrialRunner lab("characterize", lab_options);
     found = characterize(lab, subject);
@@ -287,7 +293,8 @@ int run_characterize(const CharacterizeOptions& options) {
 
 Command declare_characterize(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "characterize", "reports what an arm, or a device's arm, can render under each law");
+      "characterize",
+      "reports which walls, mass and damping an arm, or a device's arm, can render with each law");
   auto options = std::make_shared<CharacterizeOptions>();
   command->add_option("ARM", options->input.device, "the arm's file")
       ->transform(or_shipped({"devices"}), "", "")
@@ -306,10 +313,10 @@ Command declare_characterize(CLI::App& app) {
   add_force(*command, options->force);
   options->input.add_parameters(*command);
   command->footer(
-      "For each law the report has the stiffest wall that feels as stiff as set and does not "
-      "chatter, the energy\ngiven to the hand, and mass and damping felt in free motion, beside "
-      "the values that `limpid analyze`\ncomputes. All numbers come from the virtual arm of that "
-      "file: a real device may differ. The report says\nwhich numbers are measured, set and "
+      "For each law the report shows the stiffest wall that feels as stiff as it is set and does "
+      "not vibrate,\nthe energy given to the hand, and mass and damping felt in free motion, next "
+      "to the values that `limpid analyze`\ncomputes. All numbers come from the virtual arm of "
+      "that file: a real device may differ. The report says\nwhich numbers are measured, set and "
       "assumed. Exit status 1: a promise was not kept, or the command was\nstopped.\n\n" +
       parameter_help());
   return [options] { return run_characterize(*options); };

@@ -62,7 +62,7 @@ std::string joint_line(const Joint& joint, const Link& link, double inertia) {
 
 void list_joints(const ArmDescription& arm, const Eigen::MatrixXd& M, CheckReport& report) {
   report.facts.push_back(fmt::format("  {:<26} {:>18} {:>12} {:>14} {:>10} {:>15}", "joint",
-                                     "range", "effort", "damping", "its link", "moves at rest"));
+                                     "range", "effort", "damping", "link mass", "inertia at rest"));
   for (int i = 0; i < arm.dof(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     report.facts.push_back(joint_line(arm.joints[k], arm.links[k], M(i, i)));
@@ -80,17 +80,18 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
     report.facts.push_back("readings     " + filed +
                            "; --readings takes the values of the arm's file");
   }
-  report.facts.push_back(fmt::format(
-      "             condition (3) {}; the proposed law is passive at eta of {:.2f} and above (25)",
-      a.condition3.holds ? "holds" : "is BROKEN", a.eta_min));
+  report.facts.push_back(
+      fmt::format("             condition (3) {}; by equation (25) the proposed law is passive at "
+                  "an eta of {:.2f} or above",
+                  a.condition3.holds ? "is met" : "is BROKEN", a.eta_min));
   if (!a.condition3.holds) {
     report.warnings.push_back(
-        "condition (3) does not hold with these settings: lower coupling.k_vc or coupling.b_vc, or "
-        "leave both unset and Limpid fits the two gains to the arm");
+        "condition (3) is not met with these settings: reduce coupling.k_vc or coupling.b_vc, or "
+        "do not set the two gains; Limpid then fits both gains to the arm");
     const std::string late = fit_text(fitted(arm, p, a.delay, p));
     if (!a.condition3.known) {
       report.warnings.back() =
-          "condition (3): no bound is known where packets are lost (link.loss)";
+          "condition (3): no limit is known where packets are lost (link.loss)";
     } else if (a.delay + a.link > 0) {
       report.warnings.back() += "; gains that fulfil condition (3) with this delay: " + late;
     }
@@ -99,11 +100,12 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
 
 // Lists the limits on the motors' torque, which hold for any gains.
 void list_limits(const Parameters& p, CheckReport& report) {
-  report.facts.push_back(fmt::format(
-      "limits       torque {}, reached within {:.0f} ms; force at a real device's tip: {:.0f} N",
-      std::isfinite(p.torque_limit) ? fmt::format("{:.3g} N m", p.torque_limit)
-                                    : "as the effort above",
-      1000 * SafetyLimits::kSlew, SafetyLimits{}.tip_force));
+  report.facts.push_back(
+      fmt::format("limits       torque {}, reached in {:.0f} ms at the earliest; force at a real "
+                  "device's tip: {:.0f} N",
+                  std::isfinite(p.torque_limit) ? fmt::format("{:.3g} N m", p.torque_limit)
+                                                : "as in the column effort",
+                  1000 * SafetyLimits::kSlew, SafetyLimits{}.tip_force));
 }
 
 // A slide longer than this is meant to have no limits [m].
@@ -122,21 +124,21 @@ void list_units(const ArmDescription& arm, double reach, CheckReport& report) {
       slides += kSlideUnit * travel(joint);
     } else if (std::isfinite(travel(joint)) && travel(joint) > kMostTurned) {
       report.warnings.push_back(fmt::format(
-          "joint '{}' turns {:.3g} times round, from {:.3g} to {:.3g} rad; are the "
-          "limits in degrees? <limit> takes rad",
+          "joint '{}' turns by {:.3g} full turns, from {:.3g} to {:.3g} rad; are the limits in "
+          "degrees? <limit> needs rad",
           joint.name, travel(joint) / (2 * std::numbers::pi), joint.lower, joint.upper));
     }
   }
   if (reach > kLongestArm && slides <= kLongestArm) {
     report.warnings.push_back(
-        fmt::format("the arm is {:.3g} m long; are the lengths in mm? URDF takes m", reach));
+        fmt::format("the arm is {:.3g} m long; are the lengths in mm? URDF needs m", reach));
   }
 }
 
 void list_reach(const ArmDescription& arm, double mass, CheckReport& report) {
   const double most = farthest_tip(arm).distance;
   report.facts.push_back(fmt::format(
-      "reach        {:.3g} m from the origin of joint '{}' to '{}', {:.3g} kg in motion", most,
+      "reach        {:.3g} m from the origin of joint '{}' to '{}', moving mass {:.3g} kg", most,
       arm.joints.front().name, arm.tip_link, mass));
   list_units(arm, most, report);
   if (most < kFar) return;
@@ -144,9 +146,9 @@ void list_reach(const ArmDescription& arm, double mass, CheckReport& report) {
     if (joint.kind != Joint::Kind::prismatic) continue;
     const double travel = kSlideUnit * (joint.upper - joint.lower);
     if (travel < kFar) continue;
-    report.warnings.push_back(
-        fmt::format("joint '{}' slides over {:.3g} m; write the joint's real travel in <limit>",
-                    joint.name, travel));
+    report.warnings.push_back(fmt::format(
+        "joint '{}' slides through {:.3g} m; write the joint's real range of motion in <limit>",
+        joint.name, travel));
   }
 }
 
@@ -166,8 +168,8 @@ void list_inertias(const ArmDescription& arm, CheckReport& report) {
     const double ring = std::sqrt(moments.z() / link.mass);
     if (link.mass > 0 && ring > std::max(1.0, 2 * reach)) {
       report.warnings.push_back(
-          fmt::format("link '{}': {:.3g} kg m^2 with {:.3g} kg would be a ring of {:.3g} m radius; "
-                      "are the link's moments given in kg m^2?",
+          fmt::format("link '{}': a moment of {:.3g} kg m^2 with {:.3g} kg would need a ring of "
+                      "{:.3g} m radius; are the link's moments given in kg m^2?",
                       link.name, moments.z(), link.mass, ring));
     }
   }
@@ -263,7 +265,7 @@ CheckReport on_hand(const std::string& file, const InputOptions& input) {
   const Vec3 spans = 1e3 * box.sizes();
   CheckReport report;
   report.facts.push_back(fmt::format(
-      "hand         {} samples, {:.3g} s, over {:.0f} x {:.0f} x {:.0f} mm",
+      "hand         {} samples, {:.3g} s, in a space of {:.0f} x {:.0f} x {:.0f} mm",
       plan.hand.position.size(), plan.hand.duration(), spans.x(), spans.y(), spans.z()));
   if (std::string far = out_of_reach(plan); !far.empty()) {
     report.warnings.push_back(std::move(far));
@@ -273,8 +275,8 @@ CheckReport on_hand(const std::string& file, const InputOptions& input) {
 
 CheckReport on_story(const std::string& file) {
   const Story story = read_story(file);
-  return {{fmt::format("story        {}: {} steps, {:.3g} s, {} runs on one hand", story.title,
-                       story.steps.size(), story.seconds(), story.plan.lanes())},
+  return {{fmt::format("story        {}: {} steps, {:.3g} s, {} runs with the same hand",
+                       story.title, story.steps.size(), story.seconds(), story.plan.lanes())},
           {}};
 }
 
@@ -310,7 +312,8 @@ CheckReport on_toml(const CheckOptions& options) {
     return on_scene(options.file, options.input);
   }
   refuse_options(options.input, true,
-                 story ? "a story, which names all it needs" : "a sweep, which names all it needs");
+                 story ? "a story, because the file itself says its arm, scene and settings"
+                       : "a sweep, because the file itself says its arm, scene and settings");
   return story ? on_story(options.file) : on_sweep(options.file);
 }
 
@@ -334,9 +337,9 @@ CheckReport on(const CheckOptions& options) {
     return on_model(options.file);
   }
   if (suffix == ".h5") {
-    throw FileError(
-        fmt::format("{0}: a recording or a table; `limpid info {0}` says what a recording holds",
-                    options.file));
+    throw FileError(fmt::format(
+        "{0}: a recording or a table; `limpid info {0}` shows what a recording contains",
+        options.file));
   }
   throw FileError(
       fmt::format("{}: this kind of file is not known; needed: an arm (.urdf, .xacro), a scene, a "
@@ -390,9 +393,9 @@ Command declare_check(CLI::App& app) {
   options->input.add_parameters(*command);
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(
-      "The report on an arm has chain, masses, reach and fitting gains. --tip LINK says where the "
-      "chain\nends; --device is the arm that a scene or a hand is for. Exit status: 0 fine,\n1 "
-      "works, with warnings, 2 does not work; the report says why.");
+      "The report on an arm contains its chain, masses, reach and suitable gains. --tip LINK names "
+      "the link where the chain\nends; --device is the arm that a scene or a hand is for. Exit "
+      "status: 0 fine,\n1 works, with warnings, 2 does not work; the report says why.");
   return [options] { return check(*options); };
 }
 

@@ -71,8 +71,8 @@ void print_json(DeviceHub& hub) {
 
 void print_text(DeviceHub& hub) {
   fmt::print(
-      "virtual arm\n  built in; any URDF chain of 1 to 32 joints (--device), driven by "
-      "the mouse or a recorded hand\n");
+      "virtual arm\n  built in; any URDF chain of 1 to 32 joints (--device), moved by the mouse or "
+      "by a recorded hand motion\n");
   for (const FoundDevice& found : hub.found()) {
     fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, found.kind->name, found.place.id,
                found.place.path, found.place.id == hub.in_use() ? ", in use" : "",
@@ -109,10 +109,10 @@ Command declare_devices(CLI::App& app) {
       "id\nof the device in use: inverse3:ID@HOST:PORT. Touch, Omni and Premium (OpenHaptics), "
       "omega, delta, sigma,\nlambda and Falcon (Force Dimension) are found where their makers' "
       "libraries are installed: limpid-vendor\nloads the libraries, and `limpid doctor` says which "
-      "libraries are missing.\n\nThe arm's ranges and levers limit what a device's motors may do. "
-      "If a device does not report its arm, choose\nthe arm once, here or in the window's Device "
-      "panel. Until then Limpid uses a built-in arm with the same\nnumber of joints, and little "
-      "force.");
+      "libraries are missing.\n\nThe arm's joint ranges and link lengths limit what a device's "
+      "motors may do. If a device does not report\nits arm, choose the arm once, here or in the "
+      "window's Device panel. Until then Limpid uses a built-in arm with the same\nnumber of "
+      "joints, and gives only little force.");
   auto options = std::make_shared<ArmOptions>();
   auto* arm =
       command

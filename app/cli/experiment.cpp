@@ -60,7 +60,7 @@ Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentAr
   Progress progress({.title = fmt::format("{} ({} of {})", experiment.name, index + 1, count),
                      .whole = 100,
                      .unit = "",
-                     .rate = "% a second"});
+                     .rate = "% per second"});
   return carry_out(experiment, {.dir = options.out,
                                 .seed = options.seed,
                                 .threads = options.threads,
@@ -86,8 +86,8 @@ void refuse_what_has_no_effect(const InputOptions& input) {
                                       {input.alpha.has_value(), "--alpha"}}) {
     if (!given) continue;
     throw UsageError(
-        fmt::format("{}: only together with --live; this experiment has its own scene and "
-                    "settings (`limpid run` and `limpid sweep` take yours). --set may change {}",
+        fmt::format("{}: only together with --live; this experiment has its own scene and settings "
+                    "(`limpid run` and `limpid sweep` accept your own). --set may change {}",
                     option, fmt::join(kGains, ", ")));
   }
 }
@@ -123,7 +123,7 @@ void keep_those_for(const ExperimentArm& on, std::vector<const Experiment*>& wan
     return !why.empty();
   });
   if (wanted.empty()) throw UsageError(refused.front());
-  for (const std::string& why : refused) fmt::print(stderr, "limpid: left out: {}\n", why);
+  for (const std::string& why : refused) fmt::print(stderr, "limpid: not run: {}\n", why);
 }
 
 std::string name_of(const Experiment& experiment) { return experiment.name; }
@@ -155,7 +155,7 @@ int run(const ExperimentOptions& options) {
         write_report(options.out);
       } catch (const OutOfReach& e) {
         if (wanted.size() == 1) throw;
-        fmt::print(stderr, "limpid: left out: {}\n", e.what());
+        fmt::print(stderr, "limpid: not run: {}\n", e.what());
       }
     }
   } catch (const Cancelled&) {
@@ -177,10 +177,10 @@ void keep_trials(const std::vector<const LiveExperiment*>& wanted,
     std::error_code none;
     for (const fs::directory_entry& entry : fs::directory_iterator(trials, none)) {
       if (entry.path().extension() != ".h5") continue;
-      throw UsageError(fmt::format(
-          "--out {}: {} is a trial of an earlier session; choose another folder, or replace the "
-          "trials with --force",
-          options.out, entry.path().string()));
+      throw UsageError(
+          fmt::format("--out {}: {} is a trial of an earlier session; choose another folder, or "
+                      "use --force to replace the trials",
+                      options.out, entry.path().string()));
     }
   }
 }
@@ -205,7 +205,7 @@ LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
 
 int run_on_device(const ExperimentOptions& options) {
   if (options.input.readings) {
-    throw UsageError("--readings: not together with --live: a device has its own");
+    throw UsageError("--readings: not together with --live: a device has its own readings");
   }
   const auto wanted = chosen(live_experiments(), options.name, ": not together with --live");
   keep_trials(wanted, options);
@@ -230,28 +230,29 @@ int run_on_device(const ExperimentOptions& options) {
 std::string experiment_help() {
   std::string text = "Experiments:\n";
   for (const Experiment& e : experiments()) text += fmt::format("  {:<14} {}\n", e.name, e.about);
-  text += "  all            one after the other\n\nWith --live, in your hand:\n";
+  text +=
+      "  all            all experiments, one after the other\n\nWith --live, on a device in your "
+      "hand:\n";
   for (const LiveExperiment& e : live_experiments()) {
     text += fmt::format("  {:<14} {}\n", e.name, e.about);
   }
   return text +
          "\nWrites DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\nthe "
          "trials. Called again with the same DIR, the command continues where it was "
-         "stopped;\ntrials of another version of the program, or of other inputs, are run "
-         "again.\nWith --device an experiment runs on that arm, with gains that suit it; --set "
-         "changes coupling.k_vc,\ncoupling.b_vc and coupling.b_v. --readings adds encoder steps "
-         "and "
-         "delay of the arm's file. Bounds are\npromised for the built-in arm alone: on another arm "
-         "checks are measured. Each experiment has its own\nscene and settings; options for these "
-         "need --live.\nExit status "
-         "1: a check failed, or the command was stopped.";
+         "stopped;\ntrials made by another version of the program, or with other inputs, are run "
+         "again.\nWith --device an experiment runs on that arm, with gains that suit this arm; "
+         "--set changes coupling.k_vc,\ncoupling.b_vc and coupling.b_v. --readings adds encoder "
+         "steps and delay of the arm's file. Bounds are\npromised only for the built-in arm: on "
+         "another arm the values are measured, but not judged. Each\nexperiment has its own scene "
+         "and settings; options for these need --live.\nExit status 1: a check failed, or the "
+         "command was stopped.";
 }
 
 }  // namespace
 
 Command declare_experiment(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("experiment", "one of the paper's experiments: data, figure, verdict");
+  auto* command = app.add_subcommand(
+      "experiment", "runs one of the paper's experiments: writes data, a figure and a verdict");
   auto options = std::make_shared<ExperimentOptions>();
   command->add_option("NAME", options->name, "an experiment, or all")->required();
   command->add_option("--out", options->out, "the folder for the results")

@@ -88,7 +88,7 @@ class RowsTold {
     if (lanes_.size() == 1) return lanes_[0].text();
     std::vector<std::string> names{"first"};
     for (std::size_t i = 1; i < lanes_.size(); ++i) names.push_back(lane_name(i));
-    return fmt::format("{} runs on one hand\n", lanes_.size() == 2 ? "two" : "three") +
+    return fmt::format("{} runs with the same hand\n", lanes_.size() == 2 ? "two" : "three") +
            Summary::beside(lanes(), names);
   }
   // Describes the recorded contacts; recordings of the first edition have only their torque.
@@ -140,8 +140,8 @@ void write_table(const InfoOptions& options, const Session& session) {
   const std::string beside = metadata_file(options);
   const std::string wrong = try_write_atomically(beside, metadata_of(options, session.info));
   if (!wrong.empty()) throw FileError(wrong);
-  fmt::print(options.json ? stderr : stdout, "written as {}; its sources: {}\n", options.csv,
-             beside);
+  fmt::print(options.json ? stderr : stdout, "table written as {}; the sources of the table: {}\n",
+             options.csv, beside);
 }
 
 void print_json(const InfoOptions& options, const Session& session, const RowsTold& told,
@@ -277,7 +277,7 @@ int recover(const RecoverOptions& options) {
 }  // namespace
 
 Command declare_info(CLI::App& app) {
-  auto* command = app.add_subcommand("info", "says what a recording holds");
+  auto* command = app.add_subcommand("info", "shows what a recording contains");
   auto options = std::make_shared<InfoOptions>();
   command->add_option("SESSION.h5", options->session, "the recording")
       ->transform(or_shipped({"sessions"}), "", "")
@@ -292,14 +292,14 @@ Command declare_info(CLI::App& app) {
 
 Command declare_recover(CLI::App& app) {
   auto* command =
-      app.add_subcommand("recover", "makes a session file of a recording that was cut off");
+      app.add_subcommand("recover", "makes a session file from a recording that was interrupted");
   auto options = std::make_shared<RecoverOptions>();
   command
       ->add_option("SESSION.h5.part", options->part,
-                   "the recording that was cut off, a file ending in .part")
+                   "the recording that was interrupted: a file whose name ends in .part")
       ->type_name("")
       ->required();
-  command->add_option("--out", options->out, "the file to write, in place of SESSION.h5")
+  command->add_option("--out", options->out, "the file to write instead of SESSION.h5")
       ->type_name("OUT.h5");
   command->add_flag("--force", options->force, "replace the file if it exists");
   return [options] { return recover(*options); };

@@ -44,14 +44,13 @@ void print(const Identification& identification) {
     fmt::print(" {:>11.3f} {:>7.1f} %\n", identification.inertia_in_file[j] / 1e-3,
                100 * joint.residual / joint.torque);
   }
-  fmt::print("delay          {} ms from a reading to the torque that answers it\n",
+  fmt::print("delay          {} ms from a reading to the torque computed from it\n",
              text_of(found.delay, 1e-3));
   const ReadingTimes& timing = identification.bare.timing;
   if (timing.rate > 0) {
     fmt::print(
-        "readings       {:.0f} a second; time between two: median {:.2f} ms, 99th percentile "
-        "{:.2f} ms, "
-        "most {:.2f} ms\n",
+        "readings       {:.0f} per second; time between two readings: median {:.2f} ms, 99th "
+        "percentile {:.2f} ms, longest {:.2f} ms\n",
         timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
   }
   if (identification.torque_scale) {
@@ -64,7 +63,8 @@ void print_drift(const Findings& last, const Identification& now) {
   const std::vector<Drift> all = drift(last, now);
   if (all.empty()) return;
   const auto certain = std::ranges::count_if(all, &Drift::certain);
-  fmt::print("since {}: {}\n", last.when, certain == 0 ? "nothing has changed" : "changed are");
+  fmt::print("since {}: {}\n", last.when,
+             certain == 0 ? "nothing has changed" : "these values have changed");
   for (const Drift& d : all) {
     if (!d.certain) continue;
     fmt::print("  {:<30} {} -> {} {}\n", d.what, text_of(d.before, 1), text_of(d.now, 1), d.unit);
@@ -93,8 +93,8 @@ nlohmann::ordered_json rehearse_and_print(const ArmDescription& truth, const Unl
                                           const ArmDescription& found) {
   nlohmann::ordered_json json{
       {"eta", kEta}, {"delay", 1e-3 * bench.delay}, {"encoder_step", bench.encoder_step}};
-  fmt::print("\nin a coupling, eta {}: delay {} ms, encoder step {:.2g} rad\n", kEta, bench.delay,
-             bench.encoder_step);
+  fmt::print("\nused in a coupling with eta {}: delay {} ms, encoder step {:.2g} rad\n", kEta,
+             bench.delay, bench.encoder_step);
   fmt::print("{:<24} {:>20} {:>16} {:>18} {:>16} {:>10}\n", "", "drift [mrad/(N m)]",
              "hand off [%]", "friction [mN m]", "weight [mN m]", "E_c [mJ]");
   for (const CouplingKind kind : {CouplingKind::proposed, CouplingKind::predictive}) {
@@ -102,7 +102,7 @@ nlohmann::ordered_json rehearse_and_print(const ArmDescription& truth, const Unl
       const ArmDescription& believed = after ? found : guess;
       const Rehearsal r =
           rehearse(truth, bench, believed, suited(believed, kind, bench.encoder_step));
-      const char* const when = after ? "identified" : "as its file";
+      const char* const when = after ? "identified" : "as in file";
       fmt::print("{:<11} {:<12} {:>20.2f} {:>16.0f} {:>18.1f} {:>16.1f} {:>10.2f}{}\n", name(kind),
                  when, 1e3 * r.slope, 100 * r.off, 1e3 * r.friction, 1e3 * r.weight, 1e3 * r.energy,
                  r.force ? "" : "   the force was held back");
@@ -134,8 +134,8 @@ Vec3 gravity_of(const std::string& text) {
   const bool three = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &g.x(), &g.y(), &g.z(), &end) == 3;
   if (three && end == static_cast<int>(text.size()) && g.allFinite() && g.norm() < 30) return g;
   throw UsageError(
-      fmt::format("--gravity {}: needed: none, or X,Y,Z in m/s^2 in the frame of the "
-                  "arm's base, as 0,0,-9.81",
+      fmt::format("--gravity {}: needed: none, or X,Y,Z in m/s^2 in the frame of the arm's base, "
+                  "for example 0,0,-9.81",
                   text));
 }
 
@@ -166,7 +166,7 @@ void ask_to_begin(const IdentifyOptions& options, const Device& device) {
 IdentifyRun watched(const std::function<IdentifyRun(IdentifyProgress&)>& run) {
   catch_interrupts();
   IdentifyProgress motion;
-  Progress progress({.title = "identify", .whole = 100, .unit = "", .rate = "% a second"});
+  Progress progress({.title = "identify", .whole = 100, .unit = "", .rate = "% per second"});
   std::future<IdentifyRun> result = std::async(std::launch::async, [&] { return run(motion); });
   while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
     motion.see();
@@ -207,8 +207,10 @@ int write_arm(const IdentifyOptions& options, const Identification& done,
 using Move = std::function<IdentifyRun(bool with_load, IdentifyProgress&)>;
 
 void ask_for_load(const IdentifyOptions& options) {
-  fmt::print("Now fix the {:g} kg to the tip, firmly and close to it, and let go.\n",
-             options.order.load);
+  fmt::print(
+      "Now fix the mass of {:g} kg to the tip, firmly and close to the tip. Then let go of the "
+      "device.\n",
+      options.order.load);
   ask();
 }
 
@@ -234,7 +236,8 @@ bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
 int identify_simulated(IdentifyOptions& options) {
   IdentifyRequest& order = options.order;
   if (order.masses_right) {
-    throw UsageError("--masses-right: the simulated device has other masses than the arm's file");
+    throw UsageError(
+        "--masses-right: the masses of the simulated device differ from those in the arm's file");
   }
   SimulatedBench bench = simulated_bench(order, options.seed);
   const auto move = [&](bool with_load, IdentifyProgress& motion) {

@@ -15,8 +15,9 @@ std::string walls_text(const SafeWalls& walls) {
 }
 
 std::string why_text(const SafeWalls& walls) {
-  return walls.hand ? fmt::format("{}; in the hand of {:.4g} N/m", walls.why, *walls.hand)
-                    : walls.why;
+  return walls.hand
+             ? fmt::format("{}; the hand of {:.4g} N/m sets this limit", walls.why, *walls.hand)
+             : walls.why;
 }
 
 void print_bound(const NamedBound& bound) {
@@ -61,8 +62,8 @@ nlohmann::ordered_json part_json(const LawInHands& law) {
 }  // namespace
 
 void print_in_hands(const InHands& found, std::span<const CouplingKind> told) {
-  fmt::print("\nin hands of {:.4g} to {:.4g} N/m, {:.4g} N s/m and {:.4g} kg\n", found.range.from,
-             found.range.to, found.damping, found.mass);
+  fmt::print("\nfor hands with {:.4g} to {:.4g} N/m, {:.4g} N s/m and {:.4g} kg\n",
+             found.range.from, found.range.to, found.damping, found.mass);
   for (const CouplingKind kind : told) {
     const SafeWalls& walls = found.laws[static_cast<std::size_t>(kind)].in_range;
     fmt::print("stable walls, {:<12} {:>10}  {}\n", name(kind), walls_text(walls), why_text(walls));
@@ -78,19 +79,19 @@ void print_in_hands(const InHands& found, std::span<const CouplingKind> told) {
   }
   print_bound(found.sampled);
   print_bound(found.stepped);
-  fmt::print("eta_min, proposed          {:>10.4f}  (25)\n", found.eta_min_any);
+  fmt::print("eta_min, proposed          {:>10.4f}  equation (25)\n", found.eta_min_any);
   fmt::print(
-      "\nLlewellyn's criterion for the least damped joint: stable at 1 and above, if hand and "
-      "contact are passive\n");
+      "\nLlewellyn's criterion for the least damped joint: stable at values of 1 and above, if "
+      "hand and contact are passive\n");
   for (const CouplingKind kind : told) {
     const LawInHands& law = found.laws[static_cast<std::size_t>(kind)];
     std::string least;
     if (law.two_port) {
-      least = fmt::format("lowest value {:.4g} at {:.4g} Hz: {}", law.two_port->least,
-                          law.two_port->frequency,
-                          law.two_port->fails_from
-                              ? fmt::format("fails from {:.4g} Hz on; ", *law.two_port->fails_from)
-                              : "holds; ");
+      least = fmt::format(
+          "lowest value {:.4g} at {:.4g} Hz: {}", law.two_port->least, law.two_port->frequency,
+          law.two_port->fails_from
+              ? fmt::format("not fulfilled from {:.4g} Hz upwards; ", *law.two_port->fails_from)
+              : "fulfilled; ");
     }
     fmt::print("{:<26} {}{}\n", name(kind), least, law.two_port_why);
   }

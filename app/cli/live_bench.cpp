@@ -23,14 +23,14 @@ constexpr double kMostWithoutForce = 0.1;  // of a task's duration
 constexpr double kWorthSaying = 0.005;     // shortest time worth a message [s]
 constexpr double kBreath = 1;              // wait before a task without a question [s]
 
-// "these are: socket:springs, 1234:5678:9".
+// "connected devices: socket:springs, 1234:5678:9".
 std::string those_there(const DeviceHub& hub) {
   std::string ids;
   for (const FoundDevice& found : hub.found()) {
     if (!found.missing.empty()) continue;
-    ids += (ids.empty() ? "these are: " : ", ") + found.place.id;
+    ids += (ids.empty() ? "connected devices: " : ", ") + found.place.id;
   }
-  return ids.empty() ? "nothing is" : ids;
+  return ids.empty() ? "no device is connected" : ids;
 }
 
 }  // namespace
@@ -39,8 +39,8 @@ void LiveOptions::add(CLI::App& command) {
   command
       .add_option_function<std::string>(
           "--live", [this](const std::string& id) { device = id; },
-          "use a real device with your hand, not a path: the device's id, as `limpid devices` "
-          "lists it; default: the device in use")
+          "use a real device moved by your hand, not a recorded motion: the device's id, as "
+          "`limpid devices` lists it; default: the device in use")
       ->type_name("[ID]")
       ->expected(0, 1);
   command.add_flag("--yes", yes, "with --live: begin without a question");
@@ -52,7 +52,7 @@ void choose_device(const std::string& id, DeviceHub& hub, const std::string& oth
   hub.take(DeviceHub::look(wanted));
   if (wanted.empty() && hub.found().size() == 1) wanted = hub.found().front().place.id;
   if (wanted.empty()) {
-    throw UsageError("no device is chosen; `limpid devices` lists their ids" + otherwise);
+    throw UsageError("no device is chosen; `limpid devices` lists the devices' ids" + otherwise);
   }
   hub.use(wanted);
   hub.take(hub.found());

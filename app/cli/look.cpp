@@ -44,7 +44,7 @@ Look open_to_look(const LookOptions& options) {
   const FoundDevice& found = *hub.present();
   if (found.kind->leads_hand) {
     throw UsageError(fmt::format(
-        "{}: leads the hand of the virtual arm and has no joints to record; `limpid` uses it",
+        "{}: moves the hand of the virtual arm and has no joints to record; `limpid` uses it",
         found.place.id));
   }
   const DeviceNotes& notes = hub.notes(hub.in_use());

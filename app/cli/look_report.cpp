@@ -73,8 +73,8 @@ std::string beyond_text(const LookedDevice& device, const DeviceSeen& seen) {
     const JointSeen& joint = seen.joint(i);
     if (joint.least < at(device.traits.lower, i).value_or(joint.least) ||
         joint.most > at(device.traits.upper, i).value_or(joint.most)) {
-      text +=
-          look_line("range", device.arm.joints[i].name + " went beyond the range that it declares");
+      text += look_line("range",
+                        device.arm.joints[i].name + " left the range that the device declares");
     }
     if (joint.least == joint.most) {
       text += look_line("range",
@@ -103,9 +103,10 @@ std::string state_text(const DeviceSeen& seen) {
       look_line("buttons", buttons.empty() ? "no button was pressed"
                                            : fmt::format("pressed: {}", fmt::join(buttons, ", "))) +
       look_line("hand", for_some_time(seen.without_hand,
-                                      "on the switch all the time, or the device has no switch",
-                                      "no hand on the switch")) +
-      look_line("calibration", for_some_time(seen.uncalibrated, "no complaint", "not calibrated")) +
+                                      "held the switch all the time, or the device has no switch",
+                                      "nobody holds the switch")) +
+      look_line("calibration",
+                for_some_time(seen.uncalibrated, "no problem reported", "not calibrated")) +
       look_line("fault", for_some_time(seen.fault, "none", "reported")) + causes_text(seen);
   if (seen.warmth > 0) {
     text += look_line("warmth", fmt::format("at most {:.0f} % of the hottest motor's thermal limit",
@@ -150,14 +151,14 @@ std::string look_text(const LookedDevice& device, const DeviceSeen& seen) {
       look_line("arm", device.arm_why);
   if (!traits.made_by.empty()) text += look_line("driven by", traits.made_by);
   text +=
-      look_line("motors",
-                traits.pushes ? "the device has motors, and got no force" : "the device has none") +
-      look_line("axes", device.checked ? "adjusted as they were checked"
+      look_line("motors", traits.pushes ? "the device has motors; the motors got no force"
+                                        : "the device has no motors") +
+      look_line("axes", device.checked ? "adjusted as found in the check of the axes"
                                        : "as the device reports them; not checked yet") +
       look_line("joints", std::to_string(traits.dof)) +
       look_line("readings",
-                fmt::format("{}, {:.0f} a second{}; time between two: median {:.2f} ms, {:.1f} ms "
-                            "at most",
+                fmt::format("{}, {:.0f} per second{}; time between two readings: median {:.2f} ms, "
+                            "at most {:.1f} ms",
                             seen.readings(), seen.rate(),
                             traits.rate > 0 ? fmt::format(" ({:.0f} declared)", traits.rate) : "",
                             1e3 * seen.median_gap(), 1e3 * seen.worst_gap()));

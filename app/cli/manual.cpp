@@ -116,13 +116,13 @@ std::string commands(const CLI::App& app) {
 constexpr const char* kFiles = R"(.SH FILES
 .TP
 \fI~/.config/limpid\fR
-devices, layouts and presets; below \fBXDG_CONFIG_HOME\fR if that is set
+devices, layouts and presets; below \fBXDG_CONFIG_HOME\fR if this variable is set
 .TP
 \fI~/.local/share/limpid\fR
-sessions; below \fBXDG_DATA_HOME\fR if that is set
+sessions; below \fBXDG_DATA_HOME\fR if this variable is set
 .TP
 \fI~/.cache/limpid\fR
-small pictures of sessions; below \fBXDG_CACHE_HOME\fR if that is set
+small pictures of sessions; below \fBXDG_CACHE_HOME\fR if this variable is set
 .TP
 \fI$XDG_RUNTIME_DIR/limpid/NAME.control\fR
 socket of \fBlimpid \-\-listen NAME\fR and \fBlimpid serve NAME\fR, for programs of the same user

@@ -120,9 +120,10 @@ std::string html_of(const std::string& markdown) {
 
 std::string settings_html() {
   std::string out =
-      "<h1 id=\"settings\">All settings</h1><p>As <code>--set KEY=VALUE</code>, in files of "
-      "<code>--config</code>, on sliders and in Python.</p><table><thead><tr><th>key</th>"
-      "<th>default</th><th>allowed</th><th></th></tr></thead><tbody>\n";
+      "<h1 id=\"settings\">All settings</h1><p>Use these keys in <code>--set KEY=VALUE</code>, in "
+      "files of <code>--config</code>, with sliders and in "
+      "Python.</p><table><thead><tr><th>key</th><th>default</th><th>allowed</th><th></th></tr></"
+      "thead><tbody>\n";
   for (const ParameterInfo& info : parameter_table()) {
     const std::string usual = parameter_text(Parameters{}, info);
     out += fmt::format("<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td></tr>\n",

@@ -14,7 +14,7 @@ nlohmann::ordered_json bounded_json(const Bounded& of) {
 void print_measured(const MeasuredHand& hand) {
   const std::string unknown = unknown_text(hand.grip);
   fmt::print("the grip, measured         {}\n",
-             unknown.empty() ? "known; bounds hold for 95 of 100 grips" : unknown);
+             unknown.empty() ? "known; the bounds are right for 95 of 100 grips" : unknown);
   for (const GripLine& line : grip_lines(hand)) {
     fmt::print("{:<26} {}\n", line.label, line.value);
   }

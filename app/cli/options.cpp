@@ -56,7 +56,7 @@ CLI::Validator whole_number() {
 // Plan of a session with its own world and parameters; options override them.
 RunPlan plan_from_session(const InputOptions& options) {
   const Session session = read_session(options.hand);
-  if (session.size() == 0) throw FileError(options.hand + ": holds no rows");
+  if (session.size() == 0) throw FileError(options.hand + ": contains no rows");
   const Parameters chosen = make_parameters(options, session_parameters(session, options.hand));
   RunPlan plan = replay(session, options.hand, chosen);
   if (chosen.tick != session.info.tick) {
@@ -84,7 +84,7 @@ RunPlan plan_from_session(const InputOptions& options) {
     }
     if (!plan.hand_torque.empty() && plan.arm.dof() != session.info.dof) {
       throw UsageError(
-          fmt::format("--device: {} has {} joints; {} holds the hand's torque on {} joints",
+          fmt::format("--device: {} has {} joints; {} contains the hand's torque on {} joints",
                       options.device, plan.arm.dof(), options.hand, session.info.dof));
     }
   }
@@ -106,8 +106,8 @@ void vary(RunPlan& plan, const InputOptions& options) {
   const bool held = std::ranges::all_of(hand.grip, [](double grip) { return grip == 1; });
   if (!held || !plan.hand_torque.empty() || !hand.magnet.empty() || !hand.pull.empty()) {
     throw UsageError(
-        fmt::format("--variation: --hand {} is more than a path: the hand lets go, or has torques, "
-                    "a magnet or pulls, which have no variations; needed: only a path",
+        fmt::format("--variation: --hand {} contains more than a path: a released grip, torques, a "
+                    "magnet or pulls have no variations; needed: only a path",
                     options.hand));
   }
   plan.hand = varied(plan.hand, plan.seed, *options.variation);
@@ -180,9 +180,10 @@ void InputOptions::add_world(CLI::App& command) {
 }
 
 void InputOptions::add_readings(CLI::App& command) {
-  command.add_flag("--readings", readings,
-                   "use encoder steps and delay of the arm's file (touch.urdf has both); without "
-                   "this option encoders are exact and have no delay, unless set");
+  command.add_flag(
+      "--readings", readings,
+      "use encoder steps and delay of the arm's file (touch.urdf has both); without this option "
+      "encoders are exact and have no delay, unless settings say otherwise");
 }
 
 void InputOptions::add_hand(CLI::App& command) {
@@ -303,7 +304,7 @@ void keep_apart(const char* option, const std::filesystem::path& out,
     std::error_code none;
     if (out.empty() || file.empty() || !std::filesystem::equivalent(out, file, none)) continue;
     throw UsageError(
-        fmt::format("{} {}: the command reads this file; name another one", option, out.string()));
+        fmt::format("{} {}: the command reads this file; name another file", option, out.string()));
   }
 }
 
@@ -322,7 +323,7 @@ void keep_outputs_apart(const char* one, const std::filesystem::path& out, const
   };
   if (whole(out) != whole(other)) return;
   throw UsageError(
-      fmt::format("{} {}: {} writes this file; name another one", two, other.string(), one));
+      fmt::format("{} {}: {} writes this file; name another file", two, other.string(), one));
 }
 
 std::string allowed_values(const FieldInfo& info) {

@@ -49,8 +49,8 @@ std::vector<std::string> lines_of_note(const OutFolder& folder) {
     lines.push_back(line);
   if (!lines.empty() && lines.front().starts_with(kOurs)) return lines;
   throw UsageError(
-      fmt::format("--out {}: {} is not Limpid's, which keeps a note there; choose "
-                  "another folder, or move the file",
+      fmt::format("--out {}: {} was not written by Limpid, but Limpid needs a file with this name; "
+                  "choose another folder, or move the file",
                   folder.path.string(), kOutNote));
 }
 
@@ -66,10 +66,10 @@ void refuse_foreign(const OutFolder& folder) {
         (entry.is_directory(none) && !file.has_extension())) {
       continue;
     }
-    throw UsageError(fmt::format(
-        "--out {}: nothing says that {} was written by {}; choose another folder, or replace the "
-        "file with --force",
-        folder.path.string(), file.string(), folder.made_by));
+    throw UsageError(
+        fmt::format("--out {}: no mark shows that {} was written by {}; choose another folder, or "
+                    "use --force to replace the file",
+                    folder.path.string(), file.string(), folder.made_by));
   }
   if (error) throw UsageError(fmt::format("--out {}: {}", folder.path.string(), error.message()));
 }
@@ -103,7 +103,7 @@ void claim_out(const OutFolder& folder) {
 }
 
 void add_force(CLI::App& command, bool& force) {
-  command.add_flag("--force", force, "replace files in DIR that another command or a person left");
+  command.add_flag("--force", force, "replace files in DIR that another command or a person wrote");
 }
 
 }  // namespace limpid

@@ -317,7 +317,7 @@ int live(const RunOptions& options) {
   const auto refuse = [](bool given, std::string_view what) {
     if (given)
       throw UsageError(
-          fmt::format("{}: not together with --live: your own hand leads the device", what));
+          fmt::format("{}: not together with --live: your own hand moves the device", what));
   };
   refuse(!options.input.hand.empty(), "--hand");
   refuse(options.input.variation.has_value(), "--variation");
@@ -352,7 +352,7 @@ int run(const RunOptions& options) {
   if (options.input.seed && options.input.variation.value_or(0) == 0) {
     fmt::print(stderr,
                "limpid: note: --seed changes nothing here: only variations of the hand are random, "
-               "and --variation asks for none\n");
+               "and --variation is 0 or not given\n");
   }
   if (options.beside[0]) plan.beside.clear();  // those of a recording
   add_lanes(options, plan);
@@ -400,12 +400,11 @@ Command declare_run(CLI::App& app) {
   command->add_flag("--json", options->json,
                     "print the results as one JSON object, instead of lines");
   command->add_flag("--realtime", options->realtime, "run in real time, at the tick rate");
-  command->add_flag(
-      "--measure-grip", options->measure_grip,
-      fmt::format("measure how the hand holds the device: for {:.3g} s the motors add "
-                  "a small force; stiffness, damping and mass of the hand with "
-                  "their bounds, eta_min and walls in it",
-                  GripProbe::kDuration));
+  command->add_flag("--measure-grip", options->measure_grip,
+                    fmt::format("measure how the hand holds the device: for {:.3g} s the motors "
+                                "add a small force; prints stiffness, damping and mass of the hand "
+                                "with their bounds, and eta_min and walls in this hand",
+                                GripProbe::kDuration));
   for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
     command
         ->add_option_function<std::vector<std::string>>(
@@ -414,9 +413,9 @@ Command declare_run(CLI::App& app) {
               options->beside[lane - 1] = settings;
               std::erase(*options->beside[lane - 1], "");  // from the option alone
             },
-            fmt::format("a {} run at the same time, with the same hand: with the standard coupling "
-                        "(another law if a run has the standard coupling already), or with these "
-                        "settings changed",
+            fmt::format("a {} run at the same time, with the same hand; it has the standard "
+                        "coupling (another law if a run has the standard coupling already), or "
+                        "these changed settings",
                         lane_ordinal(lane)))
         ->type_name("[KEY=VALUE ...]")
         ->expected(0, -1)
@@ -428,8 +427,8 @@ Command declare_run(CLI::App& app) {
   options->input.add_hand(*command);
   options->input.add_parameters(*command);
   command->footer(
-      "FILE.csv holds a header time_s,x_m,y_m,z_m[,...] and a row for each moment. A session "
-      "brings\nits own device, scene and parameters; options override them.\n\n" +
+      "FILE.csv has a header time_s,x_m,y_m,z_m[,...] and a row for each moment. A session "
+      "contains\nits own device, scene and parameters; options override these.\n\n" +
       parameter_help());
   return [options] { return run(*options); };
 }

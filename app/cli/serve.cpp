@@ -99,7 +99,7 @@ class Worlds {
 struct RealDevice {
   RealDevice(const std::string& id, const InputOptions& input, ServedSession::World& world) {
     if (!input.hand.empty())
-      throw UsageError("--hand: not together with --live: your own hand leads the device");
+      throw UsageError("--hand: not together with --live: your own hand moves the device");
     DeviceHub hub(device_store_file(), by_rtkit());
     device = open_device(id, hub, "");
     const DeviceTraits& traits = device->traits();
@@ -183,10 +183,10 @@ Command declare_serve(CLI::App& app) {
   options->input.add_parameters(*command);
   command->footer(
       "Each line is one JSON object, and so is each answer: {\"id\": 1, \"do\": \"set\", "
-      "\"values\": {\"coupling.eta\": 0.5}};\n{\"do\": \"hello\"} lists what can be asked. The "
-      "Python package limpid speaks it. Only the user who\nstarts the program can connect. No "
-      "program can arm a real device through it, or raise a limit;\nthe command cut is always "
-      "accepted.\n\n" +
+      "\"values\": {\"coupling.eta\": 0.5}};\n{\"do\": \"hello\"} lists all commands. The Python "
+      "package limpid uses this protocol. Only the user who\nstarts the program can connect. No "
+      "program can arm a real device, or raise a limit, through the socket;\nthe command cut is "
+      "always accepted.\n\n" +
       parameter_help());
   return [options] {
     try {

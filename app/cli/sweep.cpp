@@ -23,11 +23,11 @@ namespace limpid {
 void check_point(const SweepPlan& plan, std::uint64_t index) {
   if (plan.boundary) {
     throw UsageError(
-        "--open: not for a plan with a boundary: each point of a boundary is many runs");
+        "--open: not for a plan with a boundary: each point of a boundary consists of many runs");
   }
   if (index < plan.points()) return;
-  throw UsageError(fmt::format("--open {}: is not allowed; allowed: a point from 0 to {}", index,
-                               plan.points() - 1));
+  throw UsageError(fmt::format("--open {}: is not allowed; allowed: the number of a point, 0 to {}",
+                               index, plan.points() - 1));
 }
 
 int open_point(const SweepPlan& plan, std::uint64_t index, const std::filesystem::path& out) {
@@ -75,7 +75,9 @@ SweepShare share_of(const SweepOptions& options) {
   if (options.mpi) {
     const auto rank = own_rank();
     if (!rank) {
-      throw UsageError("--mpi: no rank among many; start it as mpirun -n 8 limpid sweep ... --mpi");
+      throw UsageError(
+          "--mpi: this process is not one of many with a rank; start the command as mpirun -n 8 "
+          "limpid sweep ... --mpi");
     }
     share = {.shard = rank->rank, .shards = rank->size, .helps = true, .threads = 1};
   }
@@ -230,14 +232,15 @@ Command declare_sweep(CLI::App& app) {
       ->required()
       ->type_name("DIR");
   auto* threads =
-      command->add_option("--threads", options->threads, "default: one per core; one under mpirun")
+      command->add_option("--threads", options->threads, "default: one per core; under mpirun: one")
           ->type_name("N")
           ->check(CLI::Range(1u, kMostThreads));
   auto* shard = command->add_option("--shard", options->shard, "run only the I-th of N parts")
                     ->type_name("I/N");
   auto* gather = command->add_flag("--gather", options->gather,
                                    "run nothing; only collect the existing results");
-  auto* mpi = command->add_flag("--mpi", options->mpi, "run the part of this rank, under mpirun");
+  auto* mpi = command->add_flag("--mpi", options->mpi,
+                                "runs only the part of this process (its rank), under mpirun");
   auto* slurm = command->add_flag("--slurm", options->slurm, "run as an array job of Slurm");
   for (auto* one : {shard, gather, mpi, slurm}) {
     for (auto* other : {shard, gather, mpi, slurm}) {
@@ -251,7 +254,7 @@ Command declare_sweep(CLI::App& app) {
       ->needs(slurm);
   command
       ->add_option("--sbatch", options->array.options,
-                   "with --slurm: an option of sbatch, as --sbatch=--time=60; repeatable")
+                   "with --slurm: an option of sbatch, for example --sbatch=--time=60; repeatable")
       ->type_name("OPTION")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -265,8 +268,9 @@ Command declare_sweep(CLI::App& app) {
   auto* csv = command->add_flag("--csv", options->csv, "write DIR/table.csv as well");
   for (auto* other : {shard, gather, mpi, slurm, threads, csv}) open->excludes(other);
   add_force(*command, options->force);
-  command->add_flag("--allow-xacro", options->xacro,
-                    "expand arms in xacro that the plan names: this runs code in them");
+  command->add_flag(
+      "--allow-xacro", options->xacro,
+      "expand the xacro files of arms that the plan names: this runs code in these files");
   command->footer(
       "How to write a plan: assets/sweeps/README.md. The command writes DIR/table.h5, and parts of "
       "the table while\nthe sweep runs. Called again, the command continues where the sweep was "

@@ -93,7 +93,8 @@ const char* explain(CheckEnd end) {
     case CheckEnd::none: return "";
     case CheckEnd::stopped: return " You stopped it.";
     case CheckEnd::no_window:
-      return " The window did not answer for 0.4 s, so the check ended and the force went off.";
+      return " The window did not answer for 0.4 s, so the check ended and the force was switched "
+             "off.";
     case CheckEnd::gone: return " The device was disconnected. Plug the device in again.";
     case CheckEnd::open_hand: return " The device says that no hand holds it.";
     case CheckEnd::fault: return " The device reported a fault.";
@@ -110,7 +111,7 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
   AxisCheck check(device.traits());
   if (arm.dof() != check.dof()) {
     throw std::invalid_argument(
-        "a device must be checked as an arm with the same number of joints");
+        "a device can be checked only with an arm of the same number of joints");
   }
   Limits set(arm, limits);
   const auto joints = static_cast<std::size_t>(device.traits().dof);

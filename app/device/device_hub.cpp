@@ -199,8 +199,8 @@ std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
     const std::string now = what_it_is(traits.name, traits.dof);
     if (!notes.checked_as.empty() && notes.checked_as != now) {
       throw UncheckedError(
-          fmt::format("{}: the axes must be checked before the device may push; the stored check "
-                      "under this id is of another device: {}",
+          fmt::format("{}: the axes must be checked before the device may push; the check stored "
+                      "under this id was made for another device: {}",
                       now, notes.checked_as));
     }
     return opened;

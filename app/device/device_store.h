@@ -67,7 +67,7 @@ inline constexpr std::array kNotesFields{
 };
 inline constexpr std::array kPidFields{
     Field<PidSettings>("range", "range", &PidSettings::range, {0.01, 3.2, false, "rad"},
-                       "How far the stick tilts to each side.", {0.0873, 1.047}),
+                       "Largest angle of the stick to each side.", {0.0873, 1.047}),
     Field<PidSettings>(
         "effort", "full force", &PidSettings::effort, {0.01, 50, false, "N m"},
         "The joystick's torque at full force, measured or from the data sheet: USB gives forces "

@@ -65,7 +65,7 @@ TakenArm taken(ArmDescription arm, const DeviceTraits& traits, const std::string
 
 std::string not_as_many(const std::string& how, const ArmDescription& arm,
                         const DeviceTraits& traits) {
-  return fmt::format("{} {} the arm {} of {}, and has {} now.", traits.name, how, arm.name,
+  return fmt::format("{} {} the arm {} of {}. The device has {} now.", traits.name, how, arm.name,
                      joints(arm.dof()), joints(traits.dof));
 }
 
@@ -107,15 +107,15 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
   std::string besides;
   if (!notes.arm.empty()) {
     ArmDescription arm = read_known(notes.arm, "",
-                                    "the device was identified as that arm; `limpid identify "
-                                    "--forget` gives the device the usual arm again");
+                                    "the device was identified as this arm; `limpid identify "
+                                    "--forget` goes back to the device's default arm");
     if (!arm.delay && notes.delay >= 0) arm.delay = notes.delay;
     if (arm.dof() != traits.dof) {
       add(besides, not_as_many("was identified as", arm, traits) +
                        " `limpid identify --forget` removes the identified arm.");
     } else if (has_own(kind) && !same_joints(arm, shipped(kind->arm))) {
       add(besides,
-          fmt::format("The identified arm {} of {} has other joints than the device's own arm.",
+          fmt::format("The identified arm {} of {} has different joints than the device's own arm.",
                       arm.name, traits.name));
     } else {
       return taken(std::move(arm), traits, "the device was identified as this arm", besides);

@@ -59,7 +59,7 @@ Finding on_hid() {
           State::better,
           "the kernel has no /sys/class/hidraw",
           "USB devices cannot be used; devices on sockets can",
-          "a kernel with CONFIG_HIDRAW, as Debian's: sudo apt install linux-image-amd64"};
+          "a kernel with CONFIG_HIDRAW, for example Debian's: sudo apt install linux-image-amd64"};
 }
 
 Finding one(const FoundDevice& device) {
@@ -67,14 +67,14 @@ Finding one(const FoundDevice& device) {
   const std::string kind = fmt::format("{} at {}", device.kind->name, device.place.path);
   if (device.missing.empty()) return {kDevicesArea, what, State::fine, kind, {}, {}};
   if (device.kind->service || access(device.place.path.c_str(), R_OK | W_OK) == 0) {
-    return {kDevicesArea, what, State::better, kind, "this device is left out", device.missing};
+    return {kDevicesArea, what, State::better, kind, "this device is ignored", device.missing};
   }
   const std::string mend =
       installed_rule().empty()
-          ? "install the udev rule, and plug it in again"
+          ? "install the udev rule, and plug the device in again"
           : fmt::format(
-                "plug it in again, at the computer itself and not over ssh; if its number "
-                "is not in {}, add a line for it",
+                "plug the device in again, at the computer itself and not through ssh; if the "
+                "device's number is not in {}, add a line for it",
                 installed_rule());
   return {kDevicesArea,        what,
           State::broken,       kind + ": " + device.missing.substr(0, device.missing.find(':')),
@@ -91,7 +91,7 @@ Finding library(const VendorLine& line) {
   if (line.absent) {
     return {kDevicesArea, what, State::fine, line.missing, {}, {}};
   }
-  return {kDevicesArea, what, State::better, "it cannot be used", "such devices are left out",
+  return {kDevicesArea, what, State::better, "it cannot be used", "such devices are ignored",
           line.missing};
 }
 

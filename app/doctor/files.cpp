@@ -79,7 +79,7 @@ Finding writable(const char* what, const fs::path& folder, const char* cost) {
           cost,
           fs::is_directory(there, none)
               ? fmt::format("sudo chown -R \"$USER\" {}", there.string())
-              : fmt::format("rm {}    # it is no folder", there.string())};
+              : fmt::format("rm {}    # it is not a folder", there.string())};
 }
 
 Finding room() {
@@ -112,10 +112,10 @@ DoctorFindings look_at_files() {
       program("limpid-session", "recordings and tables of sweeps are not read"),
       program("limpid-model", "models other than glTF are not read"),
       program("limpid-video", "no videos"),
-      program("limpid-vendor", "devices of makers with a library of their own are not found"),
+      program("limpid-vendor", "devices whose makers have their own library are not found"),
       tool("gnuplot", "experiments and sweeps draw no figures", "gnuplot-nox"),
       writable("settings", user_config_dir(), "devices, layouts and presets are not remembered"),
-      writable("data", user_data_dir(), "nothing is kept between starts"),
+      writable("data", user_data_dir(), "nothing is stored for the next start"),
       writable("cache", user_cache_dir(),
                "thumbnails are not stored, so they are drawn again each time"),
       room(),

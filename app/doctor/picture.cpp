@@ -79,9 +79,9 @@ std::string all_of(int from) {
 // Asks in a process of its own, so that a driver's crash is an answer, too.
 Answer ask(const std::function<std::string()>& renderer) {
   std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) return {false, "no pipe"};
+  if (pipe(ends.data()) != 0) return {false, "a pipe could not be made"};
   const pid_t child = fork();
-  if (child < 0) return {false, "no process"};
+  if (child < 0) return {false, "a process could not be started"};
   if (child == 0) answer(ends[1], renderer);
   close(ends[1]);
   const std::string text = all_of(ends[0]);
@@ -99,7 +99,7 @@ Finding offscreen() {
           "without display",
           State::broken,
           it.text,
-          "no videos and no pictures of the command line",
+          "no videos, and no pictures from the command line",
           kDrivers};
 }
 
@@ -130,8 +130,8 @@ Finding window() {
           "window",
           State::better,
           it.text,
-          "the processor draws the picture: few pictures per second, and less computing time for "
-          "the loop",
+          "the processor draws the picture: there are few pictures per second, and the loop has "
+          "less computing time",
           "sudo apt install libgl1-mesa-dri firmware-linux    # for Intel and AMD; NVIDIA: "
           "nvidia-driver"};
 }
@@ -143,8 +143,8 @@ Finding file_dialog() {
       version ? fmt::format(
                     "file dialogs of the desktop environment, through its portal (FileChooser {})",
                     *version)
-      : has_session_bus() ? "Limpid's own: the desktop has no portal for it"
-                          : "Limpid's own: no session bus leads to the desktop";
+      : has_session_bus() ? "Limpid's own dialog: the desktop has no portal for file dialogs"
+                          : "Limpid's own dialog: no session bus connects Limpid to the desktop";
   return {kPictureArea, "file dialog", State::fine, found, {}, {}};
 }
 

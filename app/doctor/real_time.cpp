@@ -52,7 +52,8 @@ std::string mend_limits() {
   }
   return fmt::format(
       "printf '{0} - rtprio 80\\n{0} - memlock unlimited\\n' | sudo tee "
-      "/etc/security/limits.d/limpid-{0}.conf    # then log in again",
+      "/etc/security/limits.d/limpid-{0}.conf    # allows real-time priority; log in again after "
+      "it",
       user());
 }
 
@@ -87,18 +88,20 @@ Finding priority(const RealtimeReport& report) {
 Finding memory(const RealtimeReport& report) {
   const std::string limit = limit_text(RLIMIT_MEMLOCK, " KiB", 1024);
   if (report.memory_locked) {
-    return {kRealTimeArea,
-            "memory",
-            State::fine,
-            fmt::format("is locked, never swapped out (RLIMIT_MEMLOCK {})", limit),
-            {},
-            {}};
+    return {
+        kRealTimeArea,
+        "memory",
+        State::fine,
+        fmt::format("is locked in memory, and never moved to the disk (RLIMIT_MEMLOCK {})", limit),
+        {},
+        {}};
   }
   return {kRealTimeArea,
           "memory",
           State::better,
-          fmt::format("may be swapped out to the disk (RLIMIT_MEMLOCK {})", limit),
-          "a tick is late when its memory was swapped out to the disk",
+          fmt::format("is not locked in memory, and may be moved to the disk (RLIMIT_MEMLOCK {})",
+                      limit),
+          "a tick is late if Limpid's memory was moved to the disk",
           mend_limits()};
 }
 
@@ -114,8 +117,9 @@ Finding timers(int slack) {
           "timers",
           State::broken,
           found,
-          "1000 ticks a second are not reached",
-          "a kernel with CONFIG_HIGH_RES_TIMERS, as Debian's: sudo apt install linux-image-amd64"};
+          "1000 ticks per second are not reached",
+          "a kernel with CONFIG_HIGH_RES_TIMERS, for example Debian's: sudo apt install "
+          "linux-image-amd64"};
 }
 
 Finding governor() {

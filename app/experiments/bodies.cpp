@@ -41,7 +41,7 @@ AllFindings find_all(TrialRunner& lab) {
 SceneDocument rolling_ball() {
   SceneDocument document;
   document.title = "Ball on a slope";
-  document.about = "A ball rolls down ten degrees.";
+  document.about = "A ball rolls down a slope of ten degrees.";
   const double slope = radians(10);
   const Vec3 foot(1, 0, 0), up(std::sin(slope), 0, std::cos(slope));
   Object plane = ground(slope, 0.9);
@@ -76,18 +76,19 @@ std::vector<Check> same_as_in_the_loop(TrialRunner& lab) {
       off = worse(off, (Vec3(pose[0], pose[1], pose[2]) - bench.world().center(0)).norm());
       bench.step();
     }
-    checks.push_back(at_most(fmt::format("ball beside an arm in the ordinary loop: distance from "
-                                         "the ball without an arm, {} [m]",
-                                         tick_text(kBodyTicks[i])),
-                             off, 1e-9));
+    checks.push_back(at_most(
+        fmt::format(
+            "ball in a scene with an arm: distance from the ball simulated without an arm, {} [m]",
+            tick_text(kBodyTicks[i])),
+        off, 1e-9));
   }
   return checks;
 }
 
 // Error over limit of every claim, those of one kind in a column.
 FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
-  FigurePanel panel{.title = "Errors over their limits, " + tick_text(tick),
-                    .x_label = "what moves",
+  FigurePanel panel{.title = "Errors divided by their limits, " + tick_text(tick),
+                    .x_label = "kind of motion",
                     .y_label = "error / limit [-]",
                     .log_y = true,
                     .y_range = std::pair(1e-4, 1e4)};
@@ -138,13 +139,13 @@ Outcome bodies(TrialRunner& lab) {
     for (const BodyClaim& claim : claims) outcome.checks.push_back(claim.check());
   }
   for (const Check& check : same_as_in_the_loop(lab)) outcome.checks.push_back(check);
-  outcome.figure.title = "Motion of bodies against closed forms";
+  outcome.figure.title = "Motion of bodies, compared with closed-form solutions";
   outcome.figure.columns = 2;
-  FigurePanel swing{.title = "Energy of a pendulum over a minute, " + tick_text(kBodyTicks[0]),
+  FigurePanel swing{.title = "Energy of a pendulum during one minute, " + tick_text(kBodyTicks[0]),
                     .x_label = "time [s]",
                     .y_label = "energy minus energy at the start [mJ]",
                     .series = curves_of(all.curves[0], "swings")};
-  FigurePanel roll{.title = "Rolling down 20 degrees, " + tick_text(kBodyTicks[0]),
+  FigurePanel roll{.title = "Rolling down a slope of 20 degrees, " + tick_text(kBodyTicks[0]),
                    .x_label = "time [s]",
                    .y_label = "distance [m]"};
   for (const char* name : {"ball", "cylinder", "capsule"}) {
@@ -153,10 +154,10 @@ Outcome bodies(TrialRunner& lab) {
   outcome.figure.panels = {errors_panel(all.claims[0], kBodyTicks[0]),
                            errors_panel(all.claims[1], kBodyTicks[1]), swing, roll};
   outcome.figure.caption =
-      "Bodies without an arm, stepped as in the loop. The first row shows the error of each check "
-      "divided by the limit of the check, for two ticks. Errors outside the axis are drawn at the "
-      "axis end. Grey points have no theory to compare with. In the panel on rolling, solid curves "
-      "are simulated and dashed curves are theory.";
+      "Bodies without an arm, simulated in the same ticks as in the loop. The first row shows the "
+      "error of each check divided by the limit of the check, for two lengths of the tick. Errors "
+      "outside the range of the axis are drawn at its end. Grey points have no theory to compare "
+      "with. In the panel on rolling, solid curves are simulated and dashed curves are theory.";
   return outcome;
 }
 

@@ -54,13 +54,14 @@ BodyFindings slides(double tick) {
     BodyBench bench(block_on(slope, friction), tick);
     found.claims.push_back(
         {.group = "slide",
-         .what = fmt::format("block slides at {} degrees, friction {}, {}", degrees, friction,
-                             tick_text(tick)),
+         .what = fmt::format("block slides on a slope of {} degrees, friction {}, {}", degrees,
+                             friction, tick_text(tick)),
          .unit = "m/s^2",
          .expected = sliding(slope, friction),
          .measured = acceleration(bench, slope, 0.2, 0.8),
          .limit = 2,
-         .conditions = fmt::format("g (sin - mu cos); {}, from 0.2 to 0.8 s.", size)});
+         .conditions = fmt::format(
+             "Theory: g (sin(slope) - mu cos(slope)), for {}, measured from 0.2 to 0.8 s.", size)});
   }
   const double friction = 0.5, slope = 0.99 * std::atan(friction);
   BodyBench bench(block_on(slope, friction), tick);
@@ -68,16 +69,17 @@ BodyFindings slides(double tick) {
   bench.run(0.5);
   const Vec3 before = bench.world().center(0);
   bench.run(5);
-  found.claims.push_back({.group = "slide",
-                          .what = "block stays at 0.99 of the friction angle, " + tick_text(tick),
-                          .unit = "mm",
-                          .expected = 0,
-                          .measured = 1e3 * (bench.world().center(0) - before).norm(),
-                          .limit = kDriftLimit,
-                          .relative = false,
-                          .conditions = fmt::format("Friction {}, {}, kept awake, moved from 0.5 "
-                                                    "to 5.5 s.",
-                                                    friction, size)});
+  found.claims.push_back(
+      {.group = "slide",
+       .what = "block rests on a slope of 0.99 of the friction angle, " + tick_text(tick),
+       .unit = "mm",
+       .expected = 0,
+       .measured = 1e3 * (bench.world().center(0) - before).norm(),
+       .limit = kDriftLimit,
+       .relative = false,
+       .conditions = fmt::format("Friction {}, {}, computed even at rest. The error is its "
+                                 "displacement from 0.5 to 5.5 s.",
+                                 friction, size)});
   return found;
 }
 
@@ -114,13 +116,14 @@ BodyFindings rolls(double tick) {
       BodyBench bench(roller_on(slope, roller), tick);
       found.claims.push_back(
           {.group = "roll",
-           .what = fmt::format("{} rolls at {} degrees, {}", roller.name, degrees, tick_text(tick)),
+           .what = fmt::format("{} rolls on a slope of {} degrees, {}", roller.name, degrees,
+                               tick_text(tick)),
            .unit = "m/s^2",
            .expected = rolling(slope, kRollingMass, kRadius, roller.moment),
            .measured = acceleration(bench, slope, 0.2, 1),
            .limit = roller.limit,
-           .conditions = fmt::format("g sin / (1 + I / (m r^2)); radius {} mm, {} g, friction {}, "
-                                     "from 0.2 to 1 s.",
+           .conditions = fmt::format("Theory: g sin(slope) / (1 + I / (m r^2)); radius {} mm, {} "
+                                     "g, friction {}, measured from 0.2 to 1 s.",
                                      1e3 * kRadius, 1e3 * kRollingMass, kRollingFriction)});
     }
     // The way at 20 degrees, for the figure.
@@ -168,7 +171,7 @@ BodyFindings bounces(double tick) {
       found.claims.push_back({.group = "bounce",
                               .what = fmt::format("ball of {} g bounces, restitution {}, {}",
                                                   1e3 * mass, restitution, tick_text(tick)),
-                              .unit = "of its speed",
+                              .unit = "of the impact speed",
                               .expected = restitution,
                               .measured = rebound(mass, restitution, tick),
                               .limit = restitution == 0 ? 0.02 : 0.03,
@@ -211,10 +214,10 @@ void add_meeting(double tick, const Meeting& of, BodyFindings& found) {
   const std::string which = fmt::format("50 g hit {} g, restitution {}, {}", 1e3 * of.mass,
                                         of.restitution, tick_text(tick));
   const std::string conditions =
-      "Balls of 10 mm radius on a line before a wall, the left one with 1 m/s, no weight, no "
-      "friction.";
+      "Two balls of 10 mm radius and a wall are in line. The left ball moves at 1 m/s towards the "
+      "right ball. There is no weight and no friction.";
   found.claims.push_back({.group = "hit",
-                          .what = which + ": momentum after they met",
+                          .what = which + ": momentum after the balls met",
                           .unit = "N s",
                           .expected = before.momentum(),
                           .measured = met.momentum(),
@@ -274,9 +277,10 @@ BodyFindings tips_over(double tick) {
             .expected = tipping(size.x(), size.z()) / degree,
             .measured = (stands + falls) / 2 / degree,
             .limit = 1,
-            .conditions = "atan(width / height); a block of 20 x 20 x 40 mm and 50 g, friction "
-                          "1.5, set down at rest on contacts of 1e6 N/m, within 1.5 s. On softer "
-                          "contacts the block rocks and tips earlier."}}};
+            .conditions =
+                "Theory: atan(width / height). A block of 20 x 20 x 40 mm and 50 g, friction 1.5, "
+                "is placed at rest on contacts of 1e6 N/m and must fall over in 1.5 s or less. On "
+                "softer contacts the block swings to and fro and falls over earlier."}}};
 }
 
 // Cubes one on the other.
@@ -309,8 +313,9 @@ double drift(const Scene& scene, double tick, double seconds) {
 }
 
 BodyFindings rests(double tick) {
-  const std::string cubes = fmt::format("Cubes of {} mm and {} g, friction 0.5, kept awake.",
-                                        1e3 * kEdge, 1e3 * kCubeMass);
+  const std::string cubes =
+      fmt::format("Cubes of {} mm and {} g, friction 0.5, computed even at rest.", 1e3 * kEdge,
+                  1e3 * kCubeMass);
   return {{{.group = "rest",
             .what = "a cube rests for ten minutes, " + tick_text(tick),
             .unit = "mm",
@@ -322,8 +327,9 @@ BodyFindings rests(double tick) {
 }
 
 BodyFindings stands(double tick) {
-  const std::string cubes = fmt::format("Cubes of {} mm and {} g, friction 0.5, kept awake.",
-                                        1e3 * kEdge, 1e3 * kCubeMass);
+  const std::string cubes =
+      fmt::format("Cubes of {} mm and {} g, friction 0.5, computed even at rest.", 1e3 * kEdge,
+                  1e3 * kCubeMass);
   return {{{.group = "rest",
             .what = "a stack of five cubes rests for a minute, " + tick_text(tick),
             .unit = "mm",
@@ -343,13 +349,14 @@ BodyFindings grain_rests(double tick) {
   double most = 0;
   bench.run(1, [&] { most = worse(most, bench.world().spin(0).norm()); });
   return {{{.group = "rest",
-            .what = "spin that a resting cube of 10 mg should not have, " + tick_text(tick),
+            .what = "spin of a resting cube of 10 mg (should be 0), " + tick_text(tick),
             .unit = "rad/s",
             .expected = 0,
             .measured = most,
             .limit = 0.02,
             .relative = false,
-            .conditions = "A cube of 2 mm lies on a plane; the fastest spin from 2 to 3 s."}}};
+            .conditions =
+                "A cube of 2 mm lies on a plane. Its fastest spin is measured from 2 to 3 s."}}};
 }
 
 BodyFindings falls_slowly(double tick) {
@@ -359,12 +366,13 @@ BodyFindings falls_slowly(double tick) {
   BodyBench bench(scene, tick);
   bench.run(10);
   return {{{.group = "rest",
-            .what = "ball falls under a ten thousandth of the usual gravity, " + tick_text(tick),
+            .what = "ball falls under a gravity of 0.001 m/s^2, " + tick_text(tick),
             .unit = "mm",
             .expected = 50,
             .measured = -1e3 * bench.world().center(0).z(),
             .limit = 2,
-            .conditions = "g t^2 / 2; g = 0.001 m/s^2, 10 s, nothing is touched."}}};
+            .conditions =
+                "Theory: g t^2 / 2 with g = 0.001 m/s^2, after 10 s. The ball touches nothing."}}};
 }
 
 // Speed at which a row of dominoes falls; there is no closed form for it.

@@ -72,14 +72,15 @@ void add_pendulum(double tick, BodyJoint::Kind kind, double amplitude, BodyFindi
     bench.run(1);
     note();
   }
-  found.claims.push_back({.group = "swing",
-                          .what = which + ": period",
-                          .unit = "s",
-                          .expected = pendulum_period(kRodMass, to_center, I, amplitude),
-                          .measured = period,
-                          .limit = 0.1,
-                          .conditions = "4 K(sin(a / 2)) sqrt(I / (m g l)); " + of +
-                                        ", let go at rest, mean of 10 s."});
+  found.claims.push_back(
+      {.group = "swing",
+       .what = which + ": period",
+       .unit = "s",
+       .expected = pendulum_period(kRodMass, to_center, I, amplitude),
+       .measured = period,
+       .limit = 0.1,
+       .conditions = "Theory: 4 K(sin(a / 2)) sqrt(I / (m g l)), with the elliptic integral K. " +
+                     of + ", released at rest; mean of the periods in 10 s."});
   found.claims.push_back(
       {.group = "swing",
        .what = which + ": energy after a minute",
@@ -88,9 +89,9 @@ void add_pendulum(double tick, BodyJoint::Kind kind, double amplitude, BodyFindi
        .measured = bench.energy(0, moments) - before,
        .limit = kGained,
        .relative = false,
-       .conditions =
-           fmt::format("Change of the pendulum's energy. {}; energy of the swing {:.3g} mJ.", of,
-                       1e3 * kRodMass * kStandardGravity * to_center * (1 - std::cos(amplitude)))});
+       .conditions = fmt::format(
+           "Change of the pendulum's energy. {}. The energy of the swing is {:.3g} mJ.", of,
+           1e3 * kRodMass * kStandardGravity * to_center * (1 - std::cos(amplitude)))});
   found.curves.push_back(curve);
 }
 
@@ -126,25 +127,27 @@ void add_top(double tick, double spin, BodyFindings& found) {
     turned += std::remainder(now - before, radians(360));
     before = now;
   });
-  const std::string which = fmt::format("top with {} rad/s, {}", spin, tick_text(tick));
+  const std::string which = fmt::format("spinning top with {} rad/s, {}", spin, tick_text(tick));
   const std::string of =
-      "A disc of 200 g, 40 mm radius and 10 mm, on a ball joint 50 mm away, its axis level, two "
-      "seconds.";
+      "A disc of 200 g, 40 mm radius and 10 mm thickness spins on a ball joint 50 mm away. Its "
+      "axis is horizontal. The run lasts two seconds.";
   found.claims.push_back({.group = "top",
                           .what = which + ": precession",
                           .unit = "rad/s",
                           .expected = rate,
                           .measured = turned / (bench.time() - start),
                           .limit = 2,
-                          .conditions = "m g l / (I w); " + of});
-  found.claims.push_back({.group = "top",
-                          .what = which + ": energy",
-                          .unit = "J",
-                          .expected = 0,
-                          .measured = bench.energy(0, moments) - energy,
-                          .limit = kGained,
-                          .relative = false,
-                          .conditions = fmt::format("Change of {:.3g} J; {}", energy, of)});
+                          .conditions = "Theory: m g l / (I w). " + of});
+  found.claims.push_back(
+      {.group = "top",
+       .what = which + ": energy",
+       .unit = "J",
+       .expected = 0,
+       .measured = bench.energy(0, moments) - energy,
+       .limit = kGained,
+       .relative = false,
+       .conditions =
+           fmt::format("Change of the energy, which is {:.3g} J at the start. {}", energy, of)});
 }
 
 BodyFindings tops(double tick) {
@@ -180,15 +183,16 @@ void add_tumbling(double tick, double spin, BodyFindings& found) {
   });
   const std::string which = fmt::format("slab tumbles with {} rad/s, {}", spin, tick_text(tick));
   const std::string of =
-      "A slab of 30 x 50 x 10 mm and 50 g, spun about its middle axis with a "
-      "hundredth about both others, no weight";
-  found.claims.push_back({.group = "spin",
-                          .what = which + ": time of the fifth flip",
-                          .unit = "s",
-                          .expected = expected,
-                          .measured = measured,
-                          .limit = 0.5,
-                          .conditions = of + "; Euler's equations at a hundredth of the tick."});
+      "A slab of 30 x 50 x 10 mm and 50 g, without weight, spins about its axis of middle inertia, "
+      "and with a hundredth of that speed about both other axes";
+  found.claims.push_back(
+      {.group = "spin",
+       .what = which + ": time of the fifth flip",
+       .unit = "s",
+       .expected = expected,
+       .measured = measured,
+       .limit = 0.5,
+       .conditions = of + ". Theory: Euler's equations with a hundredth of the tick."});
   found.claims.push_back({.group = "spin",
                           .what = which + ": energy after ten seconds",
                           .unit = "mJ",
@@ -199,12 +203,13 @@ void add_tumbling(double tick, double spin, BodyFindings& found) {
   found.claims.push_back(
       {.group = "spin",
        .what = which + ": angular momentum after ten seconds",
-       .unit = "of it",
+       .unit = "of its start value",
        .expected = 0,
        .measured = (bench.angular_momentum(0, moments) - momentum).norm() / momentum.norm(),
        .limit = 0.005,
        .relative = false,
-       .conditions = of + ", in the world, size and direction."});
+       .conditions =
+           of + ". Deviation of the vector in world coordinates, in size and direction."});
 }
 
 BodyFindings tumbles(double tick) {
@@ -234,11 +239,12 @@ BodyFindings chains(double tick) {
   double most = 0;
   bench.run(10, [&] { most = worse(most, energy() - before); });
   const std::string of = fmt::format(
-      "Rods of 10 x 10 x 100 mm and 50 g are released in line, 60 degrees from hanging, with "
-      "{:.3g} mJ. The run lasts ten seconds.",
+      "Three rods of 10 x 10 x 100 mm and 50 g, each hinged to the next, are released in a "
+      "straight line, 60 degrees away from hanging, with an energy of {:.3g} mJ. The run lasts ten "
+      "seconds.",
       1e3 * kRodMass * kStandardGravity * kRodLength * 4.5 * (1 - std::cos(angle)));
   return {{{.group = "chain",
-            .what = "chain of three links, most energy gained, " + tick_text(tick),
+            .what = "chain of three links, largest energy gained, " + tick_text(tick),
             .unit = "J",
             .expected = 0,
             .measured = most,
@@ -246,13 +252,13 @@ BodyFindings chains(double tick) {
             .relative = false,
             .conditions = of},
            {.group = "chain",
-            .what = "chain of three links, energy at the end, " + tick_text(tick),
+            .what = "chain of three links, change of energy at the end, " + tick_text(tick),
             .unit = "J",
             .expected = 0,
             .measured = energy() - before,
             .limit = kGained,
             .relative = false,
-            .conditions = "Change; " + of}}};
+            .conditions = "Change of the energy. " + of}}};
 }
 
 // 125 g on a slider, 3.4 g hinged to them, 240 g hinged to these with stops: light between heavy.
@@ -327,7 +333,8 @@ double most_gained(const std::string& text, double tick, double seconds) {
 BodyFindings joints_with_stops(double tick) {
   return {
       {{.group = "chain",
-        .what = "light link between heavy ones at a stop, most energy gained, " + tick_text(tick),
+        .what =
+            "light link between heavy links at a stop, largest energy gained, " + tick_text(tick),
         .unit = "J",
         .expected = 0,
         .measured = most_gained(kLightBetweenHeavy, tick, 1),
@@ -337,7 +344,7 @@ BodyFindings joints_with_stops(double tick) {
             "A link of 125 g on a slider, a link of 3.4 g hinged to the first, and a link of 240 g "
             "hinged to the second. All joints have stops. The run lasts one second."},
        {.group = "chain",
-        .what = "flipper of 10 mg at its stop, most energy gained, " + tick_text(tick),
+        .what = "flipper of 10 mg at its stop, largest energy gained, " + tick_text(tick),
         .unit = "J",
         .expected = 0,
         .measured = most_gained(kFlipper, tick, 1),
@@ -367,15 +374,15 @@ BodyFindings drawers(double tick) {
   for (const double seconds : {0.25, 0.75}) {
     bench.run(seconds);
     const double time = seconds == 0.25 ? 0.25 : 1;
-    found.claims.push_back(
-        {.group = "drawer",
-         .what = fmt::format("drawer with a damper, way after {} s, {}", time, tick_text(tick)),
-         .unit = "mm",
-         .expected = 1e3 * braked_way(kMass, kDamping, speed, time),
-         .measured = 1e3 * (bench.world().center(0).x() - place),
-         .limit = 0.5,
-         .conditions = "v m / c (1 - exp(-c t / m)). A drawer of 500 g with a damper of 2 N s/m "
-                       "starts with 0.5 m/s."});
+    found.claims.push_back({.group = "drawer",
+                            .what = fmt::format("drawer with a damper, distance after {} s, {}",
+                                                time, tick_text(tick)),
+                            .unit = "mm",
+                            .expected = 1e3 * braked_way(kMass, kDamping, speed, time),
+                            .measured = 1e3 * (bench.world().center(0).x() - place),
+                            .limit = 0.5,
+                            .conditions = "Theory: v m / c (1 - exp(-c t / m)). A drawer of 500 g "
+                                          "with a damper of 2 N s/m starts at 0.5 m/s."});
   }
   constexpr double kSoft = 300, kSpring = 10, kRest = 0.02;  // [N s/m, N/m, m]
   Scene soft = drawer(kMass, kSoft);
@@ -385,13 +392,13 @@ BodyFindings drawers(double tick) {
   closing.run(60);
   found.claims.push_back(
       {.group = "drawer",
-       .what = "drawer that closes softly, way after a minute, " + tick_text(tick),
+       .what = "drawer that closes softly, distance after a minute, " + tick_text(tick),
        .unit = "mm",
        .expected = 1e3 * drawn_way(kMass, kSoft, kSpring, kRest, 60),
        .measured = 1e3 * closing.world().center(0).x(),
        .limit = 0.5,
-       .conditions = "A drawer of 500 g, 20 mm from the rest position, with a spring of 10 N/m and "
-                     "a damper of 300 N s/m."});
+       .conditions = "A drawer of 500 g starts 20 mm from the rest position. It has a spring of 10 "
+                     "N/m and a damper of 300 N s/m."});
   return found;
 }
 

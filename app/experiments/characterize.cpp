@@ -124,8 +124,9 @@ FigurePanel walls_panel(const std::vector<LawRendered>& laws) {
                     .log_y = true,
                     .x_range = std::pair(-0.5, double(laws.size()) - 0.5),
                     .y_range = std::pair(0.5 * kLeastWall, 2 * kMostWall)};
-  Series measured{"felt as set and quiet, measured", kDeviceInk, Series::Style::points, {}};
-  Series named{"by limpid analyze", kNeutralInk, Series::Style::points, {}};
+  Series measured{
+      "measured: felt as stiff as set, and quiet", kDeviceInk, Series::Style::points, {}};
+  Series named{"computed by limpid analyze", kNeutralInk, Series::Style::points, {}};
   named.mark = 2;
   for (std::size_t i = 0; i < laws.size(); ++i) {
     panel.x_ticks.emplace_back(i, info(laws[i].kind).key);
@@ -158,14 +159,15 @@ FigurePanel free_panel(const std::vector<LawRendered>& laws, const char* title, 
 
 // Closed forms of one direction, without friction and encoder steps, judge no arm of any kind.
 constexpr const char* kNoPromise =
-    "A formula for one direction, without friction and steps of encoders: it is no promise.";
+    "The formula is for one direction, without friction and encoder steps. So it promises nothing "
+    "for an arm.";
 
 void judge_walls(const Characterized& subject, const LawRendered& law, std::vector<Check>& checks) {
   const auto& [arm, p] = under(subject, law.kind);
   if (law.kind == CouplingKind::predictive) {
     const double named = std::clamp(law.named, kLeastWall, kMostWall * kAsNamed);
     checks.push_back(
-        at_least("predictive: stiffest wall, divided by the one that limpid analyze names",
+        at_least("predictive: stiffest wall, divided by the wall that `limpid analyze` computes",
                  law.wall / named, kAsNamed));
   }
   if (law.kind == CouplingKind::direct) {
@@ -174,8 +176,9 @@ void judge_walls(const Characterized& subject, const LawRendered& law, std::vect
     const TipAlong tip = tip_along(at.J, at.M, b, least_damped(at.J, b));
     const double theory = direct_wall(
         tip, {.T = p.tick, .hand_damping = kHands[0].damping, .delay = device_delay(arm, p)});
-    for (Check check : by_direct_theory(
-             "direct: stiffest wall, divided by (b_d + b_h)/(T/2 + delay)", law.wall / theory)) {
+    for (Check check :
+         by_direct_theory("direct coupling: stiffest wall, divided by (b_d + b_h)/(T/2 + delay)",
+                          law.wall / theory)) {
       check.unjudged = kNoPromise;
       checks.push_back(std::move(check));
     }
@@ -201,7 +204,8 @@ void judge_free(const LawRendered& law, std::vector<Check>& checks) {
     off = worse(off, felt == nullptr ? std::nan("") : std::abs(felt->inertia / named.inertia - 1));
   }
   Check check = at_most(
-      "predictive: relative deviation of the mass felt from that of limpid analyze, 0.5 to 5 Hz",
+      "predictive: relative deviation of the mass felt from the mass that limpid analyze computes, "
+      "0.5 to 5 Hz",
       off, kFreeOff);
   check.unjudged = kNoPromise;
   checks.push_back(std::move(check));
@@ -209,13 +213,14 @@ void judge_free(const LawRendered& law, std::vector<Check>& checks) {
 
 std::string caption(const Characterized& subject) {
   return fmt::format(
-      "{}. The tip taps a wall before the rest pose at {} m/s. Then the hand presses with {} N or "
-      "half of what the motors bear. Grips are 300 and 3,000 N/m, with 2 N s/m and without "
-      "damping. At the stiffest wall the stiffness felt is within {} % of the set one, and the rms "
-      "speed of the tip above 20 Hz is at most {} mm/s, in both grips with damping. Walls from {} "
-      "to {} N/m were tried. Energy is the largest that the hand was given. In free motion the tip "
-      "is shaken at one frequency after the other: {:.1f} mm at 1 Hz, with the same speed at all "
-      "frequencies, in a grip of {} N/m and {} N s/m. Friction of the arm is felt as damping.",
+      "{}. The tip taps a wall in front of the rest pose, at {} m/s. Then the hand presses with {} "
+      "N, or with half of the motors' limit if that is smaller. Grips are 300 and 3,000 N/m, with "
+      "2 N s/m and without damping. Stiffest wall: the stiffness felt differs from the stiffness "
+      "set by at most {} %, and the rms speed of the tip above 20 Hz is at most {} mm/s, in both "
+      "grips with damping. Walls from {} to {} N/m were tried. The energy is the largest energy "
+      "that the hand was given. In free motion the tip is moved to and fro at one frequency after "
+      "the other: {:.1f} mm at 1 Hz, with the same speed at all frequencies, in a grip of {} N/m "
+      "and {} N s/m. Friction of the arm is felt as damping.",
       subject.name, WallTap::kSpeed, kHardest, 100 * kFeltOff, 1e3 * kQuiet, kLeastWall, kMostWall,
       1e3 * shaken_by(subject.at.arm), kFreeGrip, kFreeGripDamping);
 }

@@ -1,5 +1,5 @@
 // Report of what an arm can render, law by law: walls, energy given and what is felt in free
-// motion, measured on the virtual arm of its file beside what `limpid analyze` names.
+// motion, measured on the virtual arm of its file beside what `limpid analyze` computes.
 #pragma once
 
 #include <string>

@@ -34,11 +34,10 @@ std::string numbers_section(const Characterized& subject) {
                       number.assumed ? "failed" : "") +
             "</tr>\n";
   }
-  return table_of(
-      "Numbers behind this report",
-      "Nothing here was measured by pushing: all runs are on the virtual arm with these "
-      "numbers. What is assumed may be wrong, and the figures with it.",
-      "<th>Number</th><th class=\"number\">Value</th><th>From</th>", rows);
+  return table_of("Numbers behind this report",
+                  "No device was pushed for this report: all runs use the virtual arm with these "
+                  "numbers. If an assumed number is wrong, the results are wrong too.",
+                  "<th>Number</th><th class=\"number\">Value</th><th>From</th>", rows);
 }
 
 std::string walls_section(const Characterization& found) {
@@ -52,16 +51,14 @@ std::string walls_section(const Characterization& found) {
   }
   return table_of(
       "Walls",
-      fmt::format(
-          "First: the stiffest wall that is felt as stiff as set, and that stays quiet; beside "
-          "it the stiffest wall that limpid analyze names. Then a wall of {} N/m, touched by "
-          "four hands of different grip: the stiffness that a hand feels, and the largest "
-          "energy that a hand is given.",
-          kCommonWall),
-      "<th>Law</th><th class=\"number\">Stiffest wall [N/m]</th><th class=\"number\">Named by "
-      "analyze [N/m]</th>"
-      "<th>bounded by</th><th class=\"number\">Felt [N/m]</th><th class=\"number\">Given to a hand "
-      "[mJ]</th>",
+      fmt::format("First columns: the stiffest wall that feels as stiff as set and stays quiet, "
+                  "and the stiffest wall that `limpid analyze` computes. Last columns: four hands "
+                  "with different grips touch a wall of {} N/m. The columns show the stiffness "
+                  "that a hand feels, and the largest energy that a hand is given.",
+                  kCommonWall),
+      "<th>Law</th><th class=\"number\">Stiffest wall [N/m]</th><th class=\"number\">Computed by "
+      "analyze [N/m]</th><th>bounded by</th><th class=\"number\">Felt [N/m]</th><th "
+      "class=\"number\">Given to a hand [mJ]</th>",
       rows);
 }
 
@@ -83,9 +80,9 @@ std::string free_section(const Characterization& found) {
     }
   }
   return table_of("Free motion",
-                  "Mass and damping felt at the tip. Friction is felt as damping, and not in the "
-                  "figures of limpid analyze. A tip that sticks where it turns round is felt as a "
-                  "spring, which counts as a mass below zero.",
+                  "Mass and damping felt at the tip. Friction is felt as damping; the numbers of "
+                  "`limpid analyze` do not include it. A tip that sticks when it changes direction "
+                  "feels like a spring; a spring counts as a negative mass.",
                   head, rows);
 }
 

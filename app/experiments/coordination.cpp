@@ -74,8 +74,8 @@ Figure draw(const std::vector<TrialResult>& results, const Parameters& proposed,
   Figure figure;
   figure.title = "Coordination of device and proxy in contact";
   figure.caption = fmt::format(
-      "Three contacts on the proximal link (20 N m/rad), then three at the tip (600 N/m), the same "
-      "hand in both couplings: grip {} N/m and {} N s/m, {}, eta = {}.",
+      "There are three contacts on the proximal link (20 N m/rad), then three at the tip (600 "
+      "N/m). The hand is the same under both couplings: grip {} N/m and {} N s/m, {}, eta = {}.",
       proposed.hand_stiffness, proposed.hand_damping, gains, proposed.eta);
   figure.columns = 2;
   figure.panel_height = 300;
@@ -99,7 +99,7 @@ Figure draw(const std::vector<TrialResult>& results, const Parameters& proposed,
                       .y_label = "error |x1 - x2| [mrad]"};
   add_contact_scatter(scatter, a, "standard", kStandardInk);
   add_contact_scatter(scatter, b, "proposed", kProposedInk);
-  FigurePanel wrong{.title = "Proposed: what a wrong inertia in the model adds to the error",
+  FigurePanel wrong{.title = "Proposed coupling: error added by a wrong inertia in the model",
                     .x_label = "time [s]",
                     .y_label = "change of the error [μrad]"};
   wrong.series.push_back(added_error(results[2].session, b, "half the inertia", kProxyInk));
@@ -115,7 +115,7 @@ std::vector<Check> judge(const std::vector<TrialResult>& results, double ideal) 
   std::vector<Check> checks = {
       at_least("contacts made with the standard coupling", lasting_contacts(a), 6),
       at_least("contacts made with the proposed coupling", lasting_contacts(b), 6),
-      at_most("standard coupling: deviation from 1 of the error's slope divided by 1/k_vc",
+      at_most("standard coupling: slope of the error divided by 1/k_vc, deviation from 1",
               std::abs(contact_slope(a) / ideal - 1), 0.02),
       at_most("slope of the error, proposed coupling divided by standard coupling",
               contact_slope(b) / contact_slope(a), 0.01),
@@ -124,12 +124,12 @@ std::vector<Check> judge(const std::vector<TrialResult>& results, double ideal) 
   };
   for (std::size_t i = 0; i < std::size(kInertiaErrors); ++i) {
     const Session& s = results[2 + i].session;
-    checks.push_back(at_most(fmt::format("largest error with the model's inertia times {}, divided "
-                                         "by that with the right inertia",
+    checks.push_back(at_most(fmt::format("largest error if the model has {} times the inertia, "
+                                         "divided by the largest error with the right inertia",
                                          kInertiaErrors[i]),
                              largest_error(s) / largest_error(b), 1.25));
-    checks.push_back(at_most(fmt::format("slope of the error with {} times the inertia in the "
-                                         "model, divided by that of the standard coupling",
+    checks.push_back(at_most(fmt::format("slope of the error if the model has {} times the "
+                                         "inertia, divided by the slope of the standard coupling",
                                          kInertiaErrors[i]),
                              contact_slope(s) / contact_slope(a), 0.01));
   }

@@ -1,5 +1,5 @@
 // A device whose torque answers its reading late: energy given to the hand under the predictive
-// coupling, and what is felt, free and at the walls that `limpid analyze` names.
+// coupling, and what is felt, free and at the walls that `limpid analyze` computes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -138,7 +138,7 @@ double highest_port(const Session& s) {
 double wanted_inertia(const Late& late, const FeltMotion& felt, const RunPlan& plan) {
   const Parameters& p = plan.parameters;
   const double w = 2 * std::numbers::pi * felt.f, t_d = late.ticks * p.tick;
-  const AddedMass added = added_mass(p.eta, most_delay(p, {}, false), p.tick);
+  const AddedMass added = added_mass(p.eta, most_delay(p, {}, false), p.tick, p.inertia_ratio);
   const std::complex<double> networks =
       network_impedance(added, p.band, w) * std::polar(1.0, -w * t_d);
   // Damping that motors give besides the networks [N s/m].
@@ -224,7 +224,7 @@ void add_bound(FigurePanel& panel, double value, const std::string& label) {
 }
 
 FigurePanel named_panel(const LateTable& table) {
-  FigurePanel panel{.title = "The wall that limpid analyze names",
+  FigurePanel panel{.title = "The wall that `limpid analyze` computes",
                     .x_label = "delay of the device [ms]",
                     .y_label = "stiffness [N/m]",
                     .log_y = true};
@@ -252,7 +252,7 @@ std::vector<FigurePanel> draw(const LateTable& table) {
   FigurePanel free = against_etas(table, "Free motion: largest energy given to the hand",
                                   "energy [mJ]", kEnergies, [](auto& f) { return 1e3 * f.free; });
   FigurePanel wall =
-      against_etas(table, "Wall that limpid analyze names: largest energy given to the hand",
+      against_etas(table, "Wall that `limpid analyze` computes: largest energy given to the hand",
                    "energy [mJ]", kEnergies, [](auto& f) { return 1e3 * f.wall; });
   for (FigurePanel* panel : {&free, &wall}) {
     panel->log_y = true;
@@ -260,9 +260,10 @@ std::vector<FigurePanel> draw(const LateTable& table) {
   }
   FigurePanel inertia = against_etas(
       table,
-      fmt::format("Inertia felt up to {} Hz: deviation from the wanted one", DelayPlan::kInertiaTo),
+      fmt::format("Inertia felt up to {} Hz: deviation from the wanted inertia",
+                  DelayPlan::kInertiaTo),
       "deviation / larger of eta and 1 [-]", {-0.5, 0.5}, [](auto& f) { return f.inertia; });
-  FigurePanel felt = against_etas(table, "Stiffness felt at the wall, divided by the set one",
+  FigurePanel felt = against_etas(table, "Stiffness felt at the wall, divided by the stiffness set",
                                   "felt / set [-]", {0, 1.5}, [](auto& f) { return f.felt; });
   for (const auto& [panel, wanted] : {std::pair(&inertia, 0.0), {&felt, 1.0}}) {
     add_bound(*panel, wanted + DelayPlan::kOff, "bounds");
@@ -290,18 +291,19 @@ void judge(const LateTable& table, std::vector<Check>& checks) {
     using P = DelayPlan;
     checks.push_back(at_most(where + "largest energy given to the human in free motion [J]",
                              worst.free, P::kGiven));
-    checks.push_back(
-        at_most(where + fmt::format("deviation of the inertia felt up to {} Hz from that of "
-                                    "analyze, divided by the larger of eta and 1",
-                                    P::kInertiaTo),
-                std::abs(worst.inertia), known ? P::kOffKnown : P::kOff));
-    checks.push_back(
-        at_least(where + "softest wall that analyze names [N/m]", worst.named, P::kSoftestNamed));
-    checks.push_back(at_most(where + "largest energy given to the human at that wall [J]",
-                             worst.wall, P::kGiven));
-    checks.push_back(
-        at_most(where + "relative deviation of the stiffness felt at that wall from the set one",
-                std::abs(worst.felt - 1), P::kOff));
+    checks.push_back(at_most(
+        where + fmt::format("deviation of the inertia felt up to {} Hz from the inertia that "
+                            "`limpid analyze` computes, divided by the larger of eta and 1",
+                            P::kInertiaTo),
+        std::abs(worst.inertia), known ? P::kOffKnown : P::kOff));
+    checks.push_back(at_least(where + "softest wall that `limpid analyze` computes [N/m]",
+                              worst.named, P::kSoftestNamed));
+    checks.push_back(at_most(
+        where + "largest energy given to the human at the wall that `limpid analyze` computes [J]",
+        worst.wall, P::kGiven));
+    checks.push_back(at_most(
+        where + "relative deviation of the stiffness felt at that wall from the stiffness set",
+        std::abs(worst.felt - 1), P::kOff));
   }
 }
 
@@ -312,16 +314,16 @@ Outcome delay(TrialRunner& lab) {
   free_motion(lab, table);
   at_walls(lab, table);
   Outcome outcome;
-  outcome.figure.title = "A device whose torque answers its reading late";
+  outcome.figure.title = "A device whose torque follows its reading with a delay";
   outcome.figure.caption = fmt::format(
       "Predictive coupling, eta {} to {}. The torque follows the reading with a delay of 0 to {} "
       "ms. The law knows this delay (model.delay) or does not know it. Grips are {} to {} N/m with "
       "{} N s/m; the worst grip is drawn. Free motion: the tip is shaken at all frequencies from "
-      "0.5 to 7 Hz together, {} "
-      "mm at 1 Hz. The inertia felt is compared with that of limpid analyze: eta times the arm's "
-      "own, minus the part that late networks take. Under an unknown delay late dampers take a "
-      "part too. At walls the tip taps at {} m/s and presses with {} N. Points outside a frame are "
-      "drawn at the frame's edge.",
+      "0.5 to 7 Hz together, {} mm at 1 Hz. The inertia felt is compared with the inertia that "
+      "limpid analyze computes: eta times the arm's own inertia, minus the part that delayed "
+      "networks remove. If the delay is not known, delayed dampers remove a part too. At walls the "
+      "tip taps at {} m/s and presses with {} N. Points outside a frame are drawn at the frame's "
+      "edge.",
       DelayPlan::kEtas[0], DelayPlan::kEtas[std::size(DelayPlan::kEtas) - 1], DelayPlan::kMost,
       DelayPlan::kGrips[0], DelayPlan::kGrips[std::size(DelayPlan::kGrips) - 1],
       TapBench::kGripDamping, 1e3 * DelayPlan::kAmplitude, TapBench::kSpeed, DelayPlan::kPress);

@@ -122,10 +122,10 @@ Outcome drop(TrialRunner& lab) {
   outcome.figure.panels = {height, reserve, force, beyond};
   outcome.figure.caption = fmt::format(
       "A block of {} g falls from {} cm above a tip. A hand holds the tip still. Friction is 0.5; "
-      "contacts have {}, {} and {} N/m. The block brings {:.0f} mJ. The energy account books this "
-      "energy as given by bodies, so the reserve does not fall. Staggered means no coupling: the "
-      "force of a tick follows from the last positions of tip and block. There the block cannot "
-      "slip off.",
+      "contacts have {}, {} and {} N/m. The falling block has an energy of {:.0f} mJ. The energy "
+      "account counts this energy as given by bodies, so the reserve does not fall. Staggered "
+      "means no coupling: the force of a tick is computed from the last positions of tip and "
+      "block. In the staggered case the block cannot slip off the tip.",
       1e3 * kDropMass, 100 * kDropHeight, kDropHard[0], kDropHard[1], kDropHard[2],
       1e3 * kDropMass * kDropGravity * kDropHeight);
   for (std::size_t i = 0; i < std::size(kDropHard); ++i) {
@@ -139,9 +139,8 @@ Outcome drop(TrialRunner& lab) {
     outcome.checks.push_back(
         at_least(which + "lowest reserve of the energy account, minus the reserve at the start [J]",
                  v.reserve, -1e-4));
-    outcome.checks.push_back(
-        at_least(which + "smallest share of the contact force that the governor let through",
-                 v.governor, 1));
+    outcome.checks.push_back(at_least(
+        which + "smallest share of the contact force that the governor allowed", v.governor, 1));
     outcome.checks.push_back(at_most(which + "highest E_c [J]", v.energy, 5e-4));
     outcome.checks.push_back(
         at_most(which + "largest energy given to the human minus the energy of the block [J]",

@@ -49,11 +49,12 @@ std::string caption(const ExperimentArm& on, const SweepPlan& plan) {
   RunPlan without_proxy = run_of(plan, 0);
   without_proxy.parameters.b_v = 0;
   return fmt::format(
-      "{}, full nonlinear loop at the {}, tip {} m ahead; the hand jumps by "
-      "{:.0f} um along each axis and holds without damping. Stable means that the motion dies away "
-      "within {} s. A stiff grip oscillates above k_vc / b_v = {:.0f} rad/s. There the coupling's "
-      "spring hides the proxy's damper, and the limit rises from the value of (25) towards that of "
-      "(25) with b_d alone, {:.2f}. In such grips ticks of 1 ms differ from the continuous theory.",
+      "{}, full nonlinear loop at the {}; the tip is {} m ahead. The hand jumps by {:.0f} um along "
+      "each axis and then holds without damping. Stable means that the motion becomes small in {} "
+      "s or less. A stiff grip oscillates above k_vc / b_v = {:.0f} rad/s. At such frequencies the "
+      "coupling's spring moves instead of the proxy's damper. So the limit of eta rises from the "
+      "value of equation (25) towards its value with b_d alone, {:.2f}. In such grips ticks of 1 "
+      "ms differ from the continuous theory.",
       on.heading(), on.gains(), plan.jump->at.x(), 1e6 * plan.jump->by.x(), plan.seconds,
       on.settings.k_vc / on.settings.b_v, eta_limit("pr", without_proxy));
 }
@@ -67,15 +68,15 @@ Outcome eta_min_map(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure = sweep_figure(plan, table);
   outcome.figure.caption = caption(lab.arm(), plan);
-  const std::string locked_text =
-      fmt::format("Routh's limit of the locked system, grips to {} N/m, in eta", kUsualGrip);
+  const std::string locked_text = fmt::format(
+      "Routh's limit with device and proxy locked together, grips up to {} N/m", kUsualGrip);
   outcome.checks = {
-      at_most("ticks of 0.1 ms: furthest point on the wrong side of Routh's limit with the proxy "
-              "on its spring, all grips, in eta",
+      at_most("ticks of 0.1 ms: largest distance in eta to the wrong side of Routh's limit with "
+              "the proxy on its spring, all grips",
               misplaced(plan, table, kFine, HUGE_VAL, "routh_compliant"), kEtaStep),
-      at_most("ticks of 0.1 ms: furthest point on the wrong side of " + locked_text,
+      at_most("ticks of 0.1 ms: largest distance in eta to the wrong side of " + locked_text,
               misplaced(plan, table, kFine, kUsualGrip, "routh"), kEtaStep),
-      at_most("ticks of 1 ms: furthest point on the wrong side of " + locked_text,
+      at_most("ticks of 1 ms: largest distance in eta to the wrong side of " + locked_text,
               misplaced(plan, table, kPaper, kUsualGrip, "routh"), kEtaStep)};
   return outcome;
 }

@@ -85,56 +85,66 @@ std::string stamp_text(std::uint64_t key, std::uint64_t bytes) {
 using Takes = Experiment::Takes;
 constexpr const char *kJumpIsSmall = "the hand jumps by less than a step of the encoders",
                      *kVariesReadings = "it varies encoder steps and delays itself",
-                     *kLinkTheory = "its theory has exact encoders and no delay of the device";
+                     *kLinkTheory = "its theory assumes exact encoders and a device without delay";
 
 constexpr std::array kExperiments{
     Experiment{"coordination", "coordination of device and proxy in contact (Figs. 3 and 4)",
                coordination, Takes::moving_as_built_in},
-    Experiment{"inertia", "inertia felt in free motion at three eta: the hand's torque (Fig. 5)",
+    Experiment{"inertia",
+               "inertia felt in free motion: the hand's torque at three values of eta (Fig. 5)",
                inertia, Takes::moving_as_built_in},
     Experiment{"passivity", "passivity: energy of the controller over many trials (Fig. 6)",
                passivity},
     Experiment{"spectrum", "spectrum of the hand's motion (Fig. 7)", spectrum},
     Experiment{"saturation",
-               "contact beyond the motors' torque limit, with and without anti-windup "
-               "(section 3.1), and between walls",
+               "contact that needs more than the motors' torque limit, with and without "
+               "anti-windup (section 3.1), and in corners of walls",
                saturation, Takes::moving_as_built_in},
     Experiment{"observer", "bandwidth of the estimate of the hand's force (section 3.1)", observer},
     Experiment{"transparency", "transparency: impedance felt at the handle", transparency,
                Takes::moving_as_built_in},
-    Experiment{"eta_min", "stability over eta and grip, against theory (section 4.2)", eta_min_map,
-               Takes::any, "", kJumpIsSmall},
-    Experiment{"lightness", "inertia and damping felt, and what a passive law pays for lightness",
+    Experiment{"eta_min", "stability for many eta and grips, compared with theory (section 4.2)",
+               eta_min_map, Takes::any, "", kJumpIsSmall},
+    Experiment{"lightness",
+               "inertia and damping felt, and the damping that a passive law adds if it makes the "
+               "arm light",
                lightness},
     Experiment{"zwidth", "Z-width: the stiffest wall that is rendered well", zwidth, Takes::any, "",
                kVariesReadings},
-    Experiment{
-        "approaches", "the field's laws beside these: stiffness felt and energy given", approaches,
-        Takes::none,
-        "an ideal arm, a Touch, an omega and an Inverse3 (`limpid characterize` has its bench "
-        "for any arm)"},
-    Experiment{"switching", "contacts made and broken, couplings switched while pressing",
+    Experiment{"approaches",
+               "laws of other papers compared with these laws: stiffness felt and energy given",
+               approaches, Takes::none,
+               "an ideal arm, a Touch, an omega and an Inverse3 (`limpid characterize` makes the "
+               "same tests with any arm)"},
+    Experiment{"switching", "contacts begun and ended, couplings switched while the tip presses",
                switching, Takes::moving_as_built_in},
     Experiment{"friction", "friction: sticking, slipping, and the energy that friction takes",
                friction},
-    Experiment{"delay", "delay of the device's torque: energy given, inertia and walls felt", delay,
-               Takes::any, "", kVariesReadings},
-    Experiment{"link", "teleoperation: the stiffest wall through a delay, under each law", link,
-               Takes::any, "", kLinkTheory},
-    Experiment{"walls", "walls of any arm, as stiff as limpid analyze names them", walls,
-               Takes::none, "36 random arms"},
-    Experiment{"robust", "a device that is unlike its model: how far each promise still holds",
+    Experiment{"delay",
+               "effect of a delay of the device's torque on energy given, inertia and walls felt",
+               delay, Takes::any, "", kVariesReadings},
+    Experiment{
+        "link",
+        "teleoperation: the stiffest wall with a delay between device and proxy, under each law",
+        link, Takes::any, "", kLinkTheory},
+    Experiment{"walls", "walls for any arm, with the stiffness that `limpid analyze` computes",
+               walls, Takes::none, "36 random arms"},
+    Experiment{"robust",
+               "a device that differs from its model: the largest difference at which each promise "
+               "is kept",
                robust, Takes::none, "an ideal arm and a Touch"},
     Experiment{"mass",
                "the mass felt of a body that is held, and the smallest mass that can be held",
                mass},
-    Experiment{"click", "a button: its force felt over its travel", click},
+    Experiment{"click", "a button: force felt against its displacement", click},
     Experiment{"drop", "a body that falls on the tip, and the energy account", drop},
-    Experiment{"stack",
-               "stacks of bodies: how deep they sink into each other, sweeps of the solver, energy",
-               stack},
+    Experiment{
+        "stack",
+        "stacks of bodies: how deep they sink into each other, iterations of the solver, energy",
+        stack},
     Experiment{"bodies",
-               "motion of bodies beside closed forms: too much and too little both count as errors",
+               "motion of bodies compared with closed-form solutions; values too large and too "
+               "small count as errors",
                bodies, Takes::none, "bodies without an arm"},
 };
 
@@ -282,7 +292,7 @@ std::string report_summary(std::size_t passed, std::size_t measured, std::size_t
   }
   if (measured > 0) {
     sentences.push_back(
-        fmt::format("{} measured on an arm for which no bound is promised.", measured));
+        fmt::format("Without a verdict, because no bound is promised for the arm: {}.", measured));
   }
   return fmt::format("{}", fmt::join(sentences, " "));
 }
@@ -294,11 +304,11 @@ void measured_on(const ExperimentArm& on, Outcome& outcome) {
   outcome.figure.title += ", on " + on.name;
   for (Check& c : outcome.checks) {
     if (!c.unjudged.empty()) continue;
-    c.unjudged = fmt::format("Promised for the built-in arm alone: {} {:.4g}. {} {}.", relation(c),
+    c.unjudged = fmt::format("Promised only for the built-in arm: {} {:.4g}. {} {}.", relation(c),
                              c.bound, on.heading(),
                              std::isnan(c.value) ? "gives no value"
                              : c.passed          ? "keeps this bound"
-                                                 : "misses this bound");
+                                                 : "does not keep this bound");
   }
 }
 
@@ -342,7 +352,7 @@ std::string Conditions::text() const {
       "Conditions: arm {}; limit of every motor: {}; grip {}, {}; {}; {}; {}; tick {}.", arms(),
       motors(), values(grips_, "N/m"), or_none(dampers_, "N s/m", "undamped"),
       or_none(masses_, "kg in the hand", "no mass in the hand"),
-      or_none(encoders_, "rad a step of the encoders", "exact encoders"),
+      or_none(encoders_, "rad per encoder step", "exact encoders"),
       or_none(delays_, "ms of delay", "no delay"), values(ticks_, "ms"));
 }
 
@@ -475,7 +485,7 @@ std::string why_not(const Experiment& experiment, const ExperimentArm& on) {
   if (on.built_in()) return {};
   const std::string begin = std::string(experiment.name) + ": ";
   if (experiment.takes == Takes::none) {
-    return begin + "takes no arm, as it has its own: " + experiment.own_arms;
+    return begin + "accepts no --arm, because it has arms of its own: " + experiment.own_arms;
   }
   if (on.description.dof() != kJoints) {
     return begin + fmt::format("needs an arm of {} joints; {} has {}", kJoints, on.description.name,
@@ -483,8 +493,8 @@ std::string why_not(const Experiment& experiment, const ExperimentArm& on) {
   }
   if (experiment.takes == Takes::moving_as_built_in && !moves_as_built_in(on.description)) {
     return begin + fmt::format(
-                       "needs an arm with the joints' names and the motion of the built-in arm; "
-                       "{} differs",
+                       "needs an arm with the same joint names and the same motion as the built-in "
+                       "arm; {} differs",
                        on.description.name);
   }
   if (on.readings && *experiment.own_readings != '\0') {
@@ -510,8 +520,9 @@ Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& opti
   const std::string conditions = lab.conditions().text();
   if (!conditions.empty()) {
     outcome.figure.caption += " " + conditions;
-    outcome.checks.push_back(at_most("trials that diverged, of those that may not",
-                                     static_cast<double>(lab.diverged()), 0));
+    outcome.checks.push_back(
+        at_most("number of diverged trials, among the trials that must not diverge",
+                static_cast<double>(lab.diverged()), 0));
   }
   outcome.figure.made_by = provenance(lab.conditions().settings(), lab.seed());
   write_outcome(experiment.name, outcome, options.dir);

@@ -156,7 +156,7 @@ void roam(TrialRunner& lab, Outcome& outcome) {
   panel.y_range = {1.05 * lowest, -0.3 * lowest};
   outcome.figure.panels.push_back(panel);
   outcome.checks.push_back(
-      at_least("proposed: highest E_c while eta changes by a sine, at least [J]",
+      at_least("proposed: highest E_c while eta follows a sine, lower limit [J]",
                highest_energy(results.front()), 0.1));
   outcome.checks.push_back(
       at_most("predictive: highest E_c in free motion while eta changes between 0.1 and 1 [J]",

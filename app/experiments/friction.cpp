@@ -182,9 +182,10 @@ std::vector<Dragged> drag_all(TrialRunner& lab) {
 }
 
 FigurePanel ratio_panel(const std::vector<Dragged>& all) {
-  FigurePanel panel{.title = "Tangential force divided by normal force, over the drag",
-                    .x_label = "sideways distance of the hand from where it pressed [mm]",
-                    .y_label = "tangential / normal force [-]"};
+  FigurePanel panel{
+      .title = "Tangential force divided by normal force, while the hand moves sideways",
+      .x_label = "sideways distance of the hand from the place where it pressed [mm]",
+      .y_label = "tangential / normal force [-]"};
   for (const Dragged& d : all) {
     Series line{d.what.label, d.what.ink, Series::Style::line, {}};
     for (std::size_t k = 0; k < d.rubs.size(); k += 2) {
@@ -225,7 +226,9 @@ FigurePanel stick_panel(const Trial& trial, const Dragged& d) {
 }
 
 FigurePanel taken_panel(const std::vector<Dragged>& all) {
-  FigurePanel panel{.title = "Energy that friction gave: its work and the energy in its spring",
+  FigurePanel panel{.title =
+                        "Energy that friction gave: work of the friction force, plus energy in the "
+                        "friction's spring",
                     .x_label = "time [s]",
                     .y_label = "energy [mJ]"};
   for (const Dragged& d : all) {
@@ -277,12 +280,12 @@ FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& wh
   panel.x_range = {0, kEdgeEnd};
   const std::string where = "edge and corner, " + which + ": ";
   checks.push_back(
-      at_least(where + "shortest time in which all walls were touched [s]", touched, 0.1));
+      at_least(where + "shortest time during which all walls were touched [s]", touched, 0.1));
   checks.push_back(at_most(where + "highest E_c [J]", energy, 5e-5));
   checks.push_back(at_most(where + "largest energy that friction gave in a tick [J]", given, 1e-7));
-  checks.push_back(
-      at_most(where + "friction force beyond the friction cone, divided by the normal force",
-              beyond, 1e-6));
+  checks.push_back(at_most(
+      where + "part of the friction force outside the friction cone, divided by the normal force",
+      beyond, 1e-6));
   return panel;
 }
 
@@ -290,7 +293,7 @@ FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& wh
 
 Trial rubbing(const ArmDescription& arm, const std::string& name, const RoughWalls& walls,
               HandPath hand, const Parameters& p) {
-  std::string text = "title = \"Rough walls\"\nabout = \"Planes that rub.\"\n";
+  std::string text = "title = \"Rough walls\"\nabout = \"Planes with friction.\"\n";
   for (int i = 0; i < walls.walls; ++i) {
     const Vec3& n = kOutward[i];
     text += fmt::format(
@@ -346,27 +349,29 @@ Outcome friction(TrialRunner& lab) {
   outcome.figure.title = "Friction: sticking, slipping, and the energy that friction takes";
   outcome.figure.caption = fmt::format(
       "Predictive coupling. A hand of 300 N/m and 2 N s/m presses a plane of {} N/m with {} N. "
-      "Then the hand drags the tip {} mm aside and back. In edge and corner the hand presses with "
-      "{} N and wanders, in a grip of 300 N/m with eta = 0.3 (drawn) and in a grip of 3000 N/m "
-      "with eta = 1. Each wandering is made twice: with motors of {} N m, which never meet their "
-      "limit, and with the arm's own motors, which do.",
+      "Then the hand moves the tip {} mm sideways and back. In an edge and in a corner of walls "
+      "the hand presses with {} N and moves around, in a grip of 300 N/m with eta = 0.3 (drawn) "
+      "and in a grip of 3000 N/m with eta = 1. Each motion in edge and corner is made twice: with "
+      "motors of {} N m, which never reach their limit, and with the arm's own motors, which reach "
+      "their limit.",
       kWall, kPress, 1e3 * kDrag, kEdgePress, kStrong);
   outcome.figure.columns = 2;
   double given = 0;
   for (const Dragged& d : all) given = worse(given, d.verdict.given);
   outcome.checks = {
-      at_least("plane: ticks in which the tip surely stuck", rough.stuck, 100),
-      at_least("plane: ticks in which the tip clearly slipped", rough.slid, 100),
-      at_most("plane: largest motion of the stuck tip in a tick, beyond that of the friction's "
-              "spring [m]",
+      at_least("plane: number of ticks in which the tip certainly stuck", rough.stuck, 100),
+      at_least("plane: number of ticks in which the tip clearly slipped", rough.slid, 100),
+      at_most("plane: largest motion of the stuck tip in a tick, minus the motion of the "
+              "friction's spring [m]",
               rough.crept, 1e-9),
       at_least(
           "plane: highest ratio of tangential to normal force, divided by the static coefficient",
           rough.broke_away / kStatic, 0.99),
-      at_most("plane: friction force beyond the static cone, divided by the normal force",
+      at_most("plane: part of the friction force outside the static friction cone, divided by the "
+              "normal force",
               rough.beyond, 1e-6),
-      at_most("plane: relative deviation of the tangential force from the kinetic one while the "
-              "tip slips",
+      at_most("plane: relative deviation of the tangential force from the kinetic friction force "
+              "while the tip slips",
               rough.off_kinetic, 0.01),
       at_most("plane: largest energy that friction gave in a tick [J]", given, 1e-7)};
   outcome.figure.panels = {

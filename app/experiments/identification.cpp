@@ -42,18 +42,18 @@ Identification identification(std::string device, const IdentifyRequest& order, 
 }
 
 std::string device_text(const Identification& identification) {
-  std::string text =
-      fmt::format("Delay from a reading to the torque that answers it: {} ms, besides the tick.",
-                  text_of(identification.found.delay, 1e-3));
+  std::string text = fmt::format(
+      "Delay from a reading to the torque computed from it: {} ms, in addition to the tick.",
+      text_of(identification.found.delay, 1e-3));
   const ReadingTimes& timing = identification.bare.timing;
   if (timing.rate > 0) {
     text += fmt::format(
-        " {:.0f} readings a second; time between two: median {:.2f} ms, 99th percentile {:.2f} ms, "
-        "most {:.2f} ms.",
+        " {:.0f} readings per second. Time between two readings: median {:.2f} ms, 99th percentile "
+        "{:.2f} ms, longest {:.2f} ms.",
         timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
   }
   if (identification.torque_scale) {
-    text += fmt::format(" The motors give {} times what they are told, from {}.",
+    text += fmt::format(" The motors give {} times the commanded torque, computed from {}.",
                         text_of(*identification.torque_scale, 1),
                         identification.order.load > 0
                             ? fmt::format("a load of {:g} kg at the tip", identification.order.load)

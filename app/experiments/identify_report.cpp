@@ -65,22 +65,24 @@ std::string drift_section(const std::vector<Drift>& all, const std::string& when
 
 void write_report(const Identification& identification, const std::optional<Findings>& last,
                   bool pictures, const fs::path& file) {
-  std::string body = "<section><header><h2>What was found</h2></header>\n" +
-                     joints_table(identification) + "<p>" + escaped(device_text(identification)) +
-                     "</p>\n<p class=\"soft\">\xC2\xB1: one standard deviation. Inertia and weight "
-                     "in the middle of the motion. <a href=\"identified.urdf\">arm</a>, <a "
-                     "href=\"identified.json\">figures</a>, <a href=\"motion.csv\">motion</a></p>";
+  std::string body =
+      "<section><header><h2>What was found</h2></header>\n" + joints_table(identification) + "<p>" +
+      escaped(device_text(identification)) +
+      "</p>\n<p class=\"soft\">\xC2\xB1: one standard deviation. Inertia and weight at the middle "
+      "of the range of motion. <a href=\"identified.urdf\">arm</a>, <a "
+      "href=\"identified.json\">values</a>, <a href=\"motion.csv\">motion</a></p>";
   if (pictures) {
     body +=
-        "<figure><img src=\"identified.svg\" alt=\"torques and what explains them\">"
-        "<figcaption><a href=\"identified.csv\">data</a>, <a href=\"identified.png\">picture</a>"
-        "</figcaption></figure>";
+        "<figure><img src=\"identified.svg\" alt=\"measured torques and the torques of the "
+        "identified model\"><figcaption><a href=\"identified.csv\">data</a>, <a "
+        "href=\"identified.png\">picture</a></figcaption></figure>";
   }
   body += "</section>\n";
   const auto changes = last ? drift(*last, identification) : std::vector<Drift>{};
   if (!changes.empty()) body += drift_section(changes, last->when);
   write_page(file, "Identification of " + identification.device,
-             "The arm was taken for " + identification.order.guess.name + ".", body);
+             "Arm from which the identification started: " + identification.order.guess.name + ".",
+             body);
 }
 
 const std::string& name_of(const Identification& identification, Eigen::Index joint) {
@@ -102,14 +104,14 @@ FigurePanel torque_panel(const Identification& identification, Eigen::Index join
                     .points = {{least, least}, {most, most}}};
   return {.title = name_of(identification, joint) + ": torque",
           .x_label = "torque explained by the identified model [mN m]",
-          .y_label = "the motor's [mN m]",
+          .y_label = "torque of the motor [mN m]",
           .series = {told, same}};
 }
 
 // Torque without inertia, weight and springs, over velocity.
 FigurePanel friction_panel(const Identification& identification, Eigen::Index joint) {
   const JointFinding& finding = identification.found.joints[static_cast<std::size_t>(joint)];
-  Series left{.label = "measured, without the others",
+  Series left{.label = "measured, without inertia, weight and springs",
               .color = kDeviceInk,
               .style = Series::Style::points,
               .points = {}};
@@ -120,7 +122,7 @@ FigurePanel friction_panel(const Identification& identification, Eigen::Index jo
     slowest = std::min(slowest, m.velocity), fastest = std::max(fastest, m.velocity);
   }
   const double coulomb = 1e3 * finding.coulomb.value, viscous = 1e3 * finding.viscous.value;
-  const Series back{.label = "friction that was found",
+  const Series back{.label = "identified friction",
                     .color = kProxyInk,
                     .style = Series::Style::line,
                     .points = {{slowest, viscous * slowest - coulomb}, {0, -coulomb}}};
@@ -150,7 +152,7 @@ FigurePanel readings_panel(const ReadingTimes& timing) {
     bars.points.push_back({1e3 * most * (i + 1) / kBins, share});
   }
   return {.title = "readings",
-          .x_label = "time between two [ms]",
+          .x_label = "time between two readings [ms]",
           .y_label = "share [%]",
           .series = {bars}};
 }

@@ -43,15 +43,15 @@ Outcome inertia(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "The same free motion at three etas";
   outcome.figure.caption = fmt::format(
-      "Proposed coupling at the {}, grip {} N/m and {} N s/m, no contact. In so slow a "
-      "motion damping is most of the force, and eta scales it. The experiment `lightness` measures "
-      "the inertia felt in faster motions.",
+      "Proposed coupling at the {}, grip {} N/m and {} N s/m, no contact. In such a slow motion "
+      "most of the force is damping, and eta scales the damping. The experiment `lightness` "
+      "measures the inertia felt in faster motions.",
       on.gains(), kGripStiffness, kGripDamping);
   outcome.figure.columns = 2;
   FigurePanel torque{.title = "Human torque |f1| and its estimate",
                      .x_label = "time [s]",
                      .y_label = "torque [N m]"};
-  FigurePanel motion{.title = "Shoulder angle: the motion is the same",
+  FigurePanel motion{.title = "Shoulder angle: the same motion at all three etas",
                      .x_label = "time [s]",
                      .y_label = "x1 [rad]"};
   std::vector<Series> estimates;
@@ -74,10 +74,10 @@ Outcome inertia(TrialRunner& lab) {
                                                  "from eta times the rms torque at eta = 1",
                                                  eta),
                                      std::abs(rms / (eta * rms_at_one) - 1), 0.10));
-    outcome.checks.push_back(at_most(
-        fmt::format(
-            "difference of the motion at eta = {} from that at eta = 1, divided by the range", eta),
-        largest_difference(reference, s), 0.02));
+    outcome.checks.push_back(at_most(fmt::format("difference between the motions at eta = {} and "
+                                                 "at eta = 1, divided by the range of motion",
+                                                 eta),
+                                     largest_difference(reference, s), 0.02));
   }
   torque.series.insert(torque.series.end(), estimates.begin(), estimates.end());
   outcome.figure.panels = {torque, motion};

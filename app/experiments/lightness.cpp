@@ -48,7 +48,8 @@ struct LawAtEta {
   }
   std::string label() const {
     // The proposed coupling at eta = 1 has the same curve, hidden under this one.
-    return kind == CouplingKind::standard ? "standard, on eta = 1" : fmt::format("eta = {}", eta);
+    return kind == CouplingKind::standard ? "standard (hides eta = 1)"
+                                          : fmt::format("eta = {}", eta);
   }
 };
 
@@ -160,16 +161,17 @@ Series eta_itself() {
 }
 
 FigurePanel price_panel(const std::vector<LawAtEta>& laws) {
-  FigurePanel panel{.title = "Cost of lightness: damping at 0.5 Hz over inertia at 2 Hz",
+  FigurePanel panel{.title = "Cost of a light device: damping at 0.5 Hz against inertia at 2 Hz",
                     .x_label = "inertia felt / arm's own inertia [-]",
                     .y_label = "damping felt [N m s/rad]"};
   panel.x_range = {0, 1.1};
   panel.y_range = {0, 0.03};
   const double mass = of(laws, CouplingKind::predictive).front().at(kSlow).mass;
-  panel.series.push_back({"least damping of any passive law, inertia kept up to 5.3 Hz",
-                          kNeutralInk,
-                          Series::Style::dashed,
-                          {{0, least_damping(0, mass)}, {1, 0}}});
+  panel.series.push_back(
+      {"smallest damping of any passive law that keeps this inertia up to 5.3 Hz",
+       kNeutralInk,
+       Series::Style::dashed,
+       {{0, least_damping(0, mass)}, {1, 0}}});
   for (const auto& [kind, ink] : {std::pair(CouplingKind::proposed, kProposedInk),
                                   {CouplingKind::predictive, kPredictiveInk}}) {
     Series line{
@@ -194,11 +196,12 @@ std::vector<FigurePanel> proposed_panels(const std::vector<LawAtEta>& laws) {
   light.push_back(laws.front());
   papers.push_back(laws.front());
   FigurePanel lighter =
-      over_frequency(light, "Proposed, eta to 1, and standard: inertia felt (dashed: eta)",
+      over_frequency(light, "Proposed with eta up to 1, and standard: inertia felt (dashed: eta)",
                      kInertia, &FeltMotion::inertia);
   lighter.y_range = {0, 1.1};
-  FigurePanel heavier = over_frequency(heavy, "Proposed, eta above 1: inertia felt (dashed: eta)",
-                                       kInertia, &FeltMotion::inertia);
+  FigurePanel heavier =
+      over_frequency(heavy, "Proposed with eta above 1: inertia felt (dashed: eta)", kInertia,
+                     &FeltMotion::inertia);
   heavier.y_range = {-18, 6};
   FigurePanel drag =
       over_frequency(papers, "Proposed and standard: damping felt", kDamping, &FeltMotion::damping);
@@ -234,7 +237,7 @@ std::vector<FigurePanel> panels(const std::vector<LawAtEta>& laws) {
   damped.log_y = true;
   damped.y_range = {0.0005, 0.3};
   Series least{
-      "least damping of any passive law with this inertia", kHandInk, Series::Style::dashed, {}};
+      "smallest damping of any passive law with this inertia", kHandInk, Series::Style::dashed, {}};
   const double mass = ours.front().at(kSlow).mass;
   for (double eta = 0.1; eta < 1; eta *= 1.05) {
     least.points.push_back({eta, least_damping(eta, mass)});
@@ -263,7 +266,7 @@ void judge_predictive(const std::vector<LawAtEta>& laws, std::vector<Check>& che
     if (law.eta >= 1) continue;
     const FeltMotion m = law.at(kSlow);
     checks.push_back(at_least(fmt::format("predictive, eta = {}: damping felt at 0.5 Hz, divided "
-                                          "by the least that a passive law can have",
+                                          "by the smallest damping that a passive law can have",
                                           law.eta),
                               m.damping / least_damping(law.eta, m.mass), 1));
   }
@@ -275,16 +278,17 @@ void judge_proposed(const std::vector<LawAtEta>& laws, std::vector<Check>& check
   for (const LawAtEta& law : laws) {
     if (law.eta == 1) continue;
     const double damping = law.at(kSlow).damping / one->at(kSlow).damping;
-    checks.push_back(at_most(fmt::format("proposed, eta = {}: relative deviation from eta of the "
-                                         "damping felt at 0.5 Hz over that at eta = 1",
+    checks.push_back(at_most(fmt::format("proposed, eta = {}: damping felt at 0.5 Hz, divided by "
+                                         "the damping at eta = 1: relative deviation from eta",
                                          law.eta),
                              std::abs(damping / law.eta - 1), 0.05));
   }
   for (const LawAtEta& law : laws) {
     if (law.eta <= 1) continue;
-    checks.push_back(at_most(
-        fmt::format("proposed, eta = {}: inertia felt at 0.5 Hz, which is not eta", law.eta),
-        law.at(kSlow).inertia, 0));
+    checks.push_back(at_most(fmt::format("proposed, eta = {}: inertia felt at 0.5 Hz, divided by "
+                                         "the arm's own inertia (not equal to eta)",
+                                         law.eta),
+                             law.at(kSlow).inertia, 0));
   }
 }
 
@@ -295,15 +299,15 @@ Outcome lightness(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "How light the arm can be made";
   outcome.figure.caption = fmt::format(
-      "Free motion, the tip shaken at seven frequencies together, {} mm at 1 Hz and less above, in "
-      "a grip of {} N/m and {} N s/m{}. Inertia and damping: the hand's torque "
-      "against and along the motion of all joints. An inertia of eta up to {} Hz costs every "
-      "passive law a damping of at least 1 - eta times the inertia times that frequency in rad/s. "
-      "Under the proposed coupling eta scales the damping, and so the force felt in slow motion. "
-      "By (12) the inertia felt would be eta times the arm's own; measured inertia differs. Above "
-      "eta = 1 the inertia "
-      "felt is negative up to 5 Hz. Last panel: the arm roams in an undamped grip of 3000 N/m, "
-      "with motors that have practically no limit.",
+      "Free motion; the tip is shaken at seven frequencies at the same time, {} mm at 1 Hz and "
+      "less at higher frequencies, in a grip of {} N/m and {} N s/m{}. Inertia and damping: the "
+      "parts of the hand's torque that are proportional to the acceleration and to the velocity of "
+      "all joints. To make the inertia felt eta times as large up to {} Hz, every passive law must "
+      "add a damping of at least (1 - eta) times the inertia times that frequency in rad/s. Under "
+      "the proposed coupling eta scales the damping, and so the force felt in slow motion. By "
+      "equation (12) the inertia felt would be eta times the arm's own; the measured inertia "
+      "differs. Above eta = 1 the inertia felt is negative up to 5 Hz. Last panel: the arm moves "
+      "freely in an undamped grip of 3000 N/m, with motors that have practically no limit.",
       1e3 * kAmplitude, kLightGrip, kLightGripDamping, lab.arm().readings ? "" : "; exact encoders",
       Parameters{}.band);
   outcome.figure.columns = 2;

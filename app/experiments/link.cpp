@@ -61,14 +61,14 @@ enum : std::size_t { kFitted, kStandard, kProposed, kTank, kPredictive };
 
 std::vector<LinkCurve> linked_laws() {
   using enum CouplingKind;
-  return {{"standard, gains by (3)",
+  return {{"standard, gains by condition (3)",
            LinkStudy::kStandardTint,
            {.kind = standard, .fits_link = true},
            7},
           {"standard", kStandardInk, {.kind = standard}, 4},
           {"proposed", kProposedInk, {.kind = proposed}},
           {"tank", kTankInk, {.kind = tank}},
-          {"predictive, late motors instead", kPredictiveInk, {.kind = predictive}}};
+          {"predictive, delayed motors instead", kPredictiveInk, {.kind = predictive}}};
 }
 
 void find_walls(TrialRunner& lab, std::vector<LinkCurve>& laws) {
@@ -181,7 +181,8 @@ std::vector<FigurePanel> draw(const ExperimentArm& on, const std::vector<LinkCur
                                   "stiffness [N/m]", {kSoftest, kStiffest}, &LinkCurve::walls, 1);
   Series standard{"standard, theory", kStandardInk, Series::Style::dashed, {}};
   Series proposed{"proposed, theory", kProposedInk, Series::Style::dashed, {}};
-  Series named{"predictive, wall that analyze names", kPredictiveInk, Series::Style::dashed, {}};
+  Series named{
+      "predictive, wall computed by `limpid analyze`", kPredictiveInk, Series::Style::dashed, {}};
   for (const int delay : LinkStudy::kDelays) {
     standard.points.push_back({on_axis(delay), theory.standard(delay)});
     proposed.points.push_back({on_axis(delay), theory.proposed(delay)});
@@ -195,11 +196,11 @@ std::vector<FigurePanel> draw(const ExperimentArm& on, const std::vector<LinkCur
   FigurePanel felt = over_delays(laws, "Stiffness felt at the device, at the stiffest wall",
                                  "stiffness [N/m]", {1, 25000}, &LinkCurve::felt, 1);
   FigurePanel energy = over_delays(laws,
-                                   fmt::format("Highest E_c on walls of {} and {} N/m",
+                                   fmt::format("Highest energy E_c on walls of {} and {} N/m",
                                                LinkStudy::kWalls[0], LinkStudy::kWalls[1]),
                                    "energy [mJ]", LinkStudy::kDrawn, &LinkCurve::energy, 1e3);
   const double bound = 1e3 * LinkStudy::kGiven;
-  energy.series.push_back({"what the tanks hold at the start",
+  energy.series.push_back({"energy in the tanks at the start",
                            kHandInk,
                            Series::Style::dashed,
                            {{0.45, bound}, {112, bound}}});
@@ -253,11 +254,13 @@ std::vector<Check> judge(TrialRunner& lab, const std::vector<LinkCurve>& laws,
                least_of(laws[kFitted], 100, [](int) { return 1.0; }), kStiffest),
       at_least("tank, delays up to 50 ms: stiffest wall [N/m]",
                least_of(laws[kTank], 50, [](int) { return 1.0; }), kStiffest),
-      at_least("standard: longest delay at which a tap comes to rest, divided by that of theory",
+      at_least("standard: longest delay at which a tap comes to rest, divided by the longest delay "
+               "of theory",
                found / foretold, 0.75),
-      at_most("standard: longest delay at which a tap comes to rest, divided by that of theory",
+      at_most("standard: longest delay at which a tap comes to rest, divided by the longest delay "
+              "of theory",
               found / foretold, 1.25),
-      at_least("proposed, delays up to 2 ms: stiffest wall, divided by that of theory",
+      at_least("proposed, delays up to 2 ms: stiffest wall, divided by the stiffest wall of theory",
                least_of(laws[kProposed], 2, [&](int d) { return theory.proposed(d); }), 1),
   };
 }
@@ -270,19 +273,19 @@ Outcome link(TrialRunner& lab) {
   measure_laws(lab, laws);
   const LinkTheory theory(lab.arm(), LinkStudy::kGrip[0]);
   Outcome outcome;
-  outcome.figure.title = "Walls through a delay between device and proxy";
+  outcome.figure.title = "Stiffness of walls with a delay between device and proxy";
   outcome.figure.caption = fmt::format(
-      "Taps at {} m/s, {} N, held for {} s, eta 1. At rest: E_c at most {} mJ, and the tip at most "
-      "{} mm/s at the end. Walls of {} to {} N/m were tried. A curve at the top has no limit in "
-      "this range. A curve at the bottom has no wall at which the tip comes to rest. Energies "
-      "outside {} mJ to {} J are drawn at the axis ends. This link delays all packets alike and "
-      "loses none. Only the random links of the checks have jitter and loss. Gains by (3): k_vc, "
-      "b_vc and b_v as condition (3) "
-      "has them for the link and the arm's damping. The predictive coupling has no link. Instead "
-      "the motors' torque comes late by the delay of both ways together. The law knows this delay "
-      "up to 20 ms. "
-      "Theory: of the standard coupling the poles of hand, device, spring and wall; of the "
-      "proposed one the damping against the lag of the contact.",
+      "The tip taps at {} m/s, presses with {} N and holds for {} s; eta = 1. A tap comes to rest "
+      "if E_c is at most {} mJ, and the tip has at most {} mm/s at the end. Walls of {} to {} N/m "
+      "were tried. Where a curve is at the top, no wall of this range is too stiff. Where a curve "
+      "is at the bottom, there is no wall at which the tip comes to rest. Energies outside {} mJ "
+      "to {} J are drawn at the axis ends. This link delays all packets by the same time and loses "
+      "none. Only the random links of the checks have jitter and loss. Gains by condition (3): the "
+      "k_vc, b_vc and b_v that condition (3) of the paper allows for the link and the arm's "
+      "damping. The predictive coupling has no link. Instead the motors' torque is delayed by the "
+      "delays of both ways together. The law knows this delay up to 20 ms. Theory: for the "
+      "standard coupling, from the poles of hand, device, spring and wall; for the proposed "
+      "coupling, from the damping divided by the lag of the contact.",
       TapBench::kSpeed, TapSetting{}.press, LinkStudy::kHold, 1e3 * LinkStudy::kGiven,
       1e3 * LinkStudy::kAtRest, kSoftest, kStiffest, LinkStudy::kDrawn.first,
       1e-3 * LinkStudy::kDrawn.second);

@@ -31,9 +31,10 @@ constexpr std::array kLiveExperiments{
     LiveExperiment{"coordination", "device and proxy while you press (Figs. 3 and 4)",
                    live_coordination},
     LiveExperiment{"inertia", "what you feel at three etas (Fig. 5)", live_inertia},
-    LiveExperiment{"passivity", "controller energy while you touch and circle (Fig. 6)",
+    LiveExperiment{"passivity",
+                   "controller energy while you touch a wall and move in circles (Fig. 6)",
                    live_passivity},
-    LiveExperiment{"zwidth", "the stiffest wall that does not buzz in your hand", live_zwidth},
+    LiveExperiment{"zwidth", "the stiffest wall that does not vibrate in your hand", live_zwidth},
 };
 
 // Mean over `reach` rows to both sides, taken twice; shifts nothing in time.
@@ -212,7 +213,7 @@ Outcome live_coordination(LiveLaboratory& lab) {
   figure.panels = {force, error, scatter};
   const double standard = contact_slope(runs[0].session);
   outcome.checks.push_back(
-      at_most("standard coupling: deviation from 1 of the error's slope divided by 1/k_vc",
+      at_most("standard coupling: slope of the error divided by 1/k_vc, deviation from 1",
               std::abs(standard * lab.parameters.k_vc - 1), 0.2));
   outcome.checks.push_back(
       at_most("slope of the error, proposed coupling divided by standard coupling",
@@ -230,13 +231,13 @@ Outcome live_inertia(LiveLaboratory& lab) {
   outcome.figure.title = "What a hand feels of the arm, at three etas";
   outcome.figure.caption =
       "Free motion under the proposed coupling. Inertia and damping are found from the estimated "
-      "hand torque, without the observer's lag, along M(x1) a1 and v1. Both are divided by their "
-      "values at eta = 1. Lines show (24).";
+      "hand torque, without the observer's lag, as its parts along M(x1) a1 and along v1. Both are "
+      "divided by their values at eta = 1. Lines show equation (24) of the paper.";
   outcome.figure.columns = 2;
   FigurePanel torque{.title = "Estimate of the human torque |f1|",
                      .x_label = "time [s]",
                      .y_label = "torque [N m]"};
-  FigurePanel share{.title = "Inertia and damping felt, divided by those at eta = 1",
+  FigurePanel share{.title = "Inertia and damping felt, divided by their values at eta = 1",
                     .x_label = "eta [-]",
                     .y_label = "share [-]"};
   Series inertia{"inertia", kProposedInk, Series::Style::points, {}};
@@ -255,17 +256,18 @@ Outcome live_inertia(LiveLaboratory& lab) {
     inertia.points.push_back({p.eta, mass});
     damping.points.push_back({p.eta, drag});
     if (i == 0) {
-      outcome.checks.push_back(
-          at_least("inertia felt at eta = 1, divided by the model's", felt.inertia, 0.5));
+      outcome.checks.push_back(at_least(
+          "inertia felt at eta = 1, divided by the inertia of the model", felt.inertia, 0.5));
       continue;
     }
+    outcome.checks.push_back(at_most(fmt::format("inertia felt at eta = {:.2f}, divided by the "
+                                                 "inertia at eta = 1: deviation from equation (24)",
+                                                 p.eta),
+                                     std::abs(mass - promised_inertia(p, b)), kOff));
     outcome.checks.push_back(at_most(
-        fmt::format("inertia felt at eta = {:.2f}, divided by that at eta = 1: deviation from (24)",
-                    p.eta),
-        std::abs(mass - promised_inertia(p, b)), kOff));
-    outcome.checks.push_back(at_most(
-        fmt::format("damping felt at eta = {:.2f}, divided by that at eta = 1: deviation from eta",
-                    p.eta),
+        fmt::format(
+            "damping felt at eta = {:.2f}, divided by the damping at eta = 1: deviation from eta",
+            p.eta),
         std::abs(drag - p.eta), kOff));
   }
   Series of_inertia{"", kProposedInk, Series::Style::dashed, {}};
@@ -320,7 +322,7 @@ Outcome live_passivity(LiveLaboratory& lab) {
 
 Outcome live_zwidth(LiveLaboratory& lab) {
   Outcome outcome;
-  outcome.figure.title = "The stiffest wall that does not buzz in your hand";
+  outcome.figure.title = "The stiffest wall that does not vibrate in your hand";
   outcome.figure.caption = fmt::format(
       "The hand taps and presses walls. The first wall has {} N/m, and each next wall is twice as "
       "stiff as the one before. The series ends when the rms speed of the tip above 20 Hz in "

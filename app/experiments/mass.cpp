@@ -182,7 +182,7 @@ std::string not_held(const std::vector<FeltBody>& all) {
 }
 
 FigurePanel felt_panel(const std::vector<FeltBody>& all, double mass) {
-  FigurePanel panel{.title = fmt::format("Mass felt of {} g", 1e3 * mass),
+  FigurePanel panel{.title = fmt::format("Mass felt for a cube of {} g", 1e3 * mass),
                     .x_label = "frequency [Hz]",
                     .y_label = "mass felt / mass given [-]",
                     .log_x = true,
@@ -304,16 +304,16 @@ void add_staggered(const ExperimentArm& on, double damping, const char* ink, Fig
   panel.series.insert(panel.series.end(),
                       {line, curve, {"", ink, Series::Style::points, curve.points}});
   if (damping == 0) return;
-  checks.push_back(at_most(
-      fmt::format("staggered, {} N s/m: relative deviation of the least mass from {}, up to {} N/m",
-                  damping, law, kStillDevice),
-      off, 0.1));
+  checks.push_back(at_most(fmt::format("staggered, {} N s/m: relative deviation of the smallest "
+                                       "stable mass from {}, up to {} N/m",
+                                       damping, law, kStillDevice),
+                           off, 0.1));
 }
 
 FigurePanel least_panel(TrialRunner& lab, std::vector<Check>& checks) {
-  FigurePanel panel{.title = "The least mass that can be held",
+  FigurePanel panel{.title = "The smallest mass that can be held",
                     .x_label = "stiffness that holds the mass [N/m]",
-                    .y_label = "least stable mass [g]",
+                    .y_label = "smallest stable mass [g]",
                     .log_x = true,
                     .log_y = true,
                     .x_range = std::pair(80.0, 25000.0),
@@ -350,22 +350,24 @@ Outcome mass(TrialRunner& lab) {
   for (const FeltBody& one : all) {
     if (one.way.law != CouplingKind::predictive) continue;
     outcome.checks.push_back(at_most(
-        fmt::format("{}: relative deviation of the mass felt of {} g from m / (1 - m w^2 / K)",
-                    one.way.label, 1e3 * one.mass),
+        fmt::format(
+            "{}, cube of {} g: relative deviation of the mass felt from m / (1 - m w^2 / K)",
+            one.way.label, 1e3 * one.mass),
         one.off(), one.way.eta == 1 ? 0.02 : 0.04));
   }
   outcome.figure.panels.push_back(least_panel(lab, outcome.checks));
   outcome.figure.caption = fmt::format(
       "The magnet holds a cube without weight by the centre of mass, at {} N/m ({} N/m where the "
       "label says so). The hand shakes the tip at five frequencies together: {} mm at 1 Hz and "
-      "less above. The mass felt is the hand's force in phase with the tip's acceleration, minus "
-      "that of the same shaking with {} mg (for the other laws: with no cube). The spring between "
-      "tip and cube turns a mass m into m / (1 - m w^2 / K). {}Staggered means no coupling: the "
-      "force of a tick follows from the last positions of tip and body, and the body is stepped "
-      "after the tick. Last panel: the hand nudges the tip by {} mm, and the cube comes to rest or "
-      "not; the motors never meet their limit. While the device stands still, a staggered body "
-      "needs a mass of at least K T^2/4 + B T/2 (Jury). The device does not stand still beyond {} "
-      "N/m, or without a damper. Where a curve ends, no mass up to {} kg is stable.",
+      "less at higher frequencies. The mass felt is the hand's force in phase with the tip's "
+      "acceleration, minus the same part of the force when the hand shakes {} mg (under the other "
+      "laws: no cube). The spring between tip and cube turns a mass m into m / (1 - m w^2 / K). "
+      "{}Staggered means no coupling: the force of a tick is computed from the last positions of "
+      "tip and body, and the body moves after the tick. Last panel: the hand suddenly moves the "
+      "tip by {} mm, and the cube comes to rest or does not; the motors never reach their limit. "
+      "While the device stands still, a staggered body needs a mass of at least K T^2/4 + B T/2 "
+      "(Jury). The device does not stand still above {} N/m, or without a damper. Where a curve "
+      "ends, no mass up to {} kg is stable.",
       kHeld, kHeldSoftly, 1e3 * kHeldAmplitude, 1e6 * kSpeck, not_held(all), 1e3 * kNudge,
       kStillDevice, kHeaviest);
   return outcome;

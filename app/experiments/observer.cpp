@@ -144,7 +144,7 @@ void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   }
 
   Series ideal{"alpha / m", kNeutralInk, Series::Style::dashed, {}};
-  Series gain_line{"in ticks of 1 ms", kProxyInk, Series::Style::line, {}};
+  Series gain_line{"theory in ticks of 1 ms", kProxyInk, Series::Style::line, {}};
   Series phase_line{"", kContactInk, Series::Style::line, {}};
   for (double w_f = 3; w_f < 2e4; w_f *= 1.1) {
     const Response sampled = sampled_response(f, w_f, kTick);
@@ -164,9 +164,9 @@ void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   outcome.checks.push_back(at_most(
       fmt::format("deviation of the -3 dB bandwidth from alpha / m where w_f T <= {}", kUnsampled),
       off_fast, 0.02));
-  outcome.checks.push_back(
-      at_most("-3 dB and -45 degree bandwidths: error against (17) in ticks, all gains and modes",
-              off_sampled, 0.03));
+  outcome.checks.push_back(at_most(
+      "-3 dB and -45 degree bandwidths: deviation from equation (17) in ticks, all gains and modes",
+      off_sampled, 0.03));
 }
 
 // Draws f1_hat over f1 along the heaviest mode for three gains.
@@ -177,7 +177,7 @@ void response(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   const Modes modes = modes_of(trials.front().plan.arm);
   const std::vector<TrialResult> results = lab.run(trials);
   FigurePanel panel;
-  panel.title = "Estimated over true human torque, heaviest mode (lines: theory)";
+  panel.title = "Estimated divided by true human torque, heaviest mode (lines: theory)";
   panel.x_label = "frequency [Hz]";
   panel.y_label = "gain [-]";
   panel.log_x = panel.log_y = true;
@@ -242,8 +242,9 @@ void error_decay(TrialRunner& lab, Outcome& outcome) {
     }
   }
   outcome.figure.panels.push_back(panel);
-  outcome.checks.push_back(at_most(
-      "decay rate of a wrong estimate: error against (18) in ticks, all modes", worst, 0.02));
+  outcome.checks.push_back(
+      at_most("decay rate of a wrong estimate: deviation from equation (18) in ticks, all modes",
+              worst, 0.02));
 }
 
 // Checks that estimates stay bounded for gains over many decades.
@@ -273,7 +274,8 @@ void every_gain(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   double largest = 0;
   for (const double one : ratio) largest = worse(largest, one);
   outcome.checks.push_back(
-      at_most("largest estimate divided by largest torque, alpha from 1e-5 to 1e3", largest, 1.1));
+      at_most("largest estimated torque divided by largest true torque, alpha from 1e-5 to 1e3",
+              largest, 1.1));
 }
 
 }  // namespace
@@ -320,11 +322,12 @@ double sampled_decay(double w_f, double T) { return -std::log(std::abs(lag(w_f, 
 Outcome observer(TrialRunner& lab) {
   const Shaking shaking(lab.seed());
   Outcome outcome;
-  outcome.figure.title = "The human force observer: bandwidth, error and stability over its gain";
+  outcome.figure.title =
+      "The human force observer: bandwidth, error and stability against its gain";
   outcome.figure.caption = fmt::format(
-      "{} with its tip held {} m ahead in an undamped grip of 300 N/m, eta = 1, ticks of "
-      "{} ms. The hand shakes with all frequencies from {} to {} Hz together; modes of M at that "
-      "pose.",
+      "{} with its tip held {} m ahead in an undamped grip of 300 N/m, eta = 1, ticks of {} ms. "
+      "The hand shakes with all frequencies from {} to {} Hz together. The modes are the modes of "
+      "M at that pose.",
       lab.arm().heading(), start().x(), 1e3 * kTick, kLowest, kHighest);
   outcome.figure.columns = 2;
   bandwidth(lab, shaking, outcome);

@@ -202,12 +202,12 @@ Figure draw(const Runs& runs, const std::string& gains) {
   figure.caption = fmt::format(
       "Controller energy E_c in free motion, contact and circles on the table; {}. Lines: mean of "
       "{} trials. Bands: lowest to highest trial. The curve \"total\" includes the device's own "
-      "damping, the curve \"commanded\" only motors and proxy. Last panel: a hand, a spring of {} "
-      "N/m without damping, holds the device still. By Routh and Hurwitz this is stable from eta = "
-      "{:.3f} on.",
+      "damping, the curve \"commanded\" only motors and proxy. Last panel: a hand holds the device "
+      "still. This hand is a spring of {} N/m without damping. By the criterion of Routh and "
+      "Hurwitz the loop is then stable if eta is at least {:.3f}.",
       gains, kTrialsOfACase, kStiffGrip, runs.limit);
   figure.columns = 2;
-  const FigurePanel axes{.x_label = "time over the trial's length [-]", .y_label = "energy [mJ]"};
+  const FigurePanel axes{.x_label = "time / length of the trial [-]", .y_label = "energy [mJ]"};
   FigurePanel total = axes, commanded = axes, zero = axes;
   total.title = "Total";
   commanded.title = "Commanded";
@@ -235,30 +235,30 @@ std::vector<Check> judge(const Runs& runs) {
   }
   for (std::size_t i = 0; i < runs.compared(); ++i) {
     checks.push_back(
-        at_most(fmt::format("highest E_c, commanded, of all trials, {} [J]", runs.cases[i].name),
+        at_most(fmt::format("highest commanded E_c of all trials, {} [J]", runs.cases[i].name),
                 highest(runs.of(i), &Books::highest_commanded), kNoise));
   }
   // Order: 0.6 above standard above 3; 0.6 above 1 above 3 above 5.
   for (const auto& [low, high] : {std::pair(4, 0), {2, 4}, {1, 0}, {2, 1}, {3, 2}}) {
     const auto l = static_cast<std::size_t>(low), h = static_cast<std::size_t>(high);
-    checks.push_back(at_most(fmt::format("mean final E_c, total: {} minus {} [J]",
+    checks.push_back(at_most(fmt::format("mean of the final total E_c: {} minus {} [J]",
                                          runs.cases[l].name, runs.cases[h].name),
                              final_mean(runs.of(l)) - final_mean(runs.of(h)), 0));
   }
   double least = std::numeric_limits<double>::infinity();
   for (const Books& trial : runs.of(runs.compared()))
     least = worse_low(least, trial.highest_commanded);
-  checks.push_back(at_least(
-      "highest E_c, commanded, in each trial at eta = 0.4, which is not passive, at least [J]",
-      least, kNoise));
+  checks.push_back(
+      at_least("highest commanded E_c at eta = 0.4 (not passive), in each trial, lower limit [J]",
+               least, kNoise));
   checks.push_back(at_most(
       fmt::format(
-          "stiff grip, eta {:.3f}: motion after 1.5 s, divided by motion just after the nudge",
+          "stiff grip, eta {:.3f}: motion after 1.5 s, divided by motion just after a small push",
           runs.limit * (1 + kOffLimit)),
       growth(runs.held[0]), 0.5));
   checks.push_back(at_least(
       fmt::format(
-          "stiff grip, eta {:.3f}: motion after 1.5 s, divided by motion just after the nudge",
+          "stiff grip, eta {:.3f}: motion after 1.5 s, divided by motion just after a small push",
           runs.limit * (1 - kOffLimit)),
       growth(runs.held[1]), 2));
   return checks;

@@ -49,22 +49,22 @@ struct Imperfection {
 const std::vector<Imperfection>& imperfections() {
   using P = Parameters;
   static const std::vector<Imperfection> all{
-      {"motors give more",
-       "of what they are told",
-       1,
-       &P::torque_scale,
-       {1.1, 1.2, 1.3, 1.5, 2},
-       4},
-      {"motors give less", "of what they are told", 1, &P::torque_scale, {0.9, 0.8, 0.7, 0.5}, 4},
+      {"motors give more", "of the command", 1, &P::torque_scale, {1.1, 1.2, 1.3, 1.5, 2}, 4},
+      {"motors give less", "of the command", 1, &P::torque_scale, {0.9, 0.8, 0.7, 0.5}, 4},
       {"current loop", "Hz", 1, &P::current_loop, {2000, 1000, 500, 300, 200, 100, 50}, 5},
       {"resonance", "Hz", 1, &P::resonance, {1000, 700, 500, 300, 200, 150, 100, 70, 50, 30}, 3},
       {"cogging", "mN m", 1e3, &P::cogging, {5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2}, 6},
       {"unknown friction", "mN m", 1e3, &P::unknown_friction, {2e-3, 5e-3, 1e-2, 2e-2, 5e-2}, 5},
       {"eccentric encoders", "mrad", 1e3, &P::eccentricity, {5e-4, 1e-3, 2e-3, 5e-3, 1e-2}, 5},
       {"wrong zero", "mrad", 1e3, &P::zero_error, {1e-2, 2e-2, 5e-2, 0.1, 0.2}, 5},
-      {"inertia believed, more", "of the true one", 1, &P::inertia_error, {1.25, 1.5, 2, 3}, 4},
-      {"inertia believed, less",
-       "of the true one",
+      {"model's inertia too large",
+       "of the true inertia",
+       1,
+       &P::inertia_error,
+       {1.25, 1.5, 2, 3},
+       4},
+      {"model's inertia too small",
+       "of the true inertia",
        1,
        &P::inertia_error,
        {0.8, 0.67, 0.5, 0.33},
@@ -109,7 +109,7 @@ class RobustBench {
     for (const BenchArm& arm : kRobustArms) arms_.push_back(arm.arm());
   }
 
-  // The wall that `limpid analyze` names for the case without any imperfection [N/m].
+  // The wall that `limpid analyze` computes for the case without any imperfection [N/m].
   double named(const RobustCase& of) const {
     const ArmDescription& arm = arms_[of.arm];
     const TipLimits limits = tip_limits(arm, rest_pose(arm), of.parameters(arm), {});
@@ -255,7 +255,7 @@ std::string curve_label(const RobustCase& c) {
 
 FigurePanel panel_of(std::size_t way, const std::string& title, const std::string& y) {
   const Imperfection& of = imperfections()[way];
-  FigurePanel panel{.title = fmt::format("{}, over the {}", title, of.title),
+  FigurePanel panel{.title = fmt::format("{}, against the {}", title, of.title),
                     .x_label = fmt::format("{} [{}]", of.title, of.unit),
                     .y_label = y,
                     .log_x = true,
@@ -285,7 +285,8 @@ void add_curves(FigurePanel& panel, const std::vector<RobustCase>& cases, std::s
 
 FigurePanel given_panel(const Robustness& all, std::size_t way) {
   constexpr double kLeast = 1e-3, kMost = 1e4;  // [mJ]
-  FigurePanel panel = panel_of(way, "Energy given at the named wall", "most given [mJ]");
+  FigurePanel panel =
+      panel_of(way, "Energy given at the computed wall", "largest energy given [mJ]");
   panel.y_range = {0.5 * kLeast, 2 * kMost};
   add_curves(panel, all.cases, way,
              [&](std::size_t i) { return std::clamp(1e3 * all.came[i].given, kLeast, kMost); });
@@ -305,7 +306,8 @@ FigurePanel stiffest_panel(RobustBench& bench, std::size_t way) {
     }
   }
   const std::vector<double> walls = bench.stiffest(cases);
-  FigurePanel panel = panel_of(way, "The stiffest wall rendered well", "stiffest wall [N/m]");
+  FigurePanel panel =
+      panel_of(way, "The stiffest wall that is rendered well", "stiffest wall [N/m]");
   panel.y_range = {0.8 * kLeastWall, 1.5 * kMostWall};
   add_curves(panel, cases, way, [&](std::size_t i) { return walls[i]; });
   return panel;
@@ -322,9 +324,9 @@ void judge_promised(const Robustness& all, std::vector<Check>& checks) {
     const auto promised = [&](const RobustCase& c) {
       return (c.way == w || c.level == 0) && c.level <= way.promised && c.of_law().promises;
     };
-    checks.push_back(at_most(
-        fmt::format("{} to {}: largest energy given [J]", way.title, level_text(way, way.promised)),
-        all.most_given(promised), kMayGive));
+    checks.push_back(at_most(fmt::format("{}, at worst {}: largest energy given [J]", way.title,
+                                         level_text(way, way.promised)),
+                             all.most_given(promised), kMayGive));
   }
 }
 
@@ -336,11 +338,11 @@ void tell_ends(const Robustness& all, std::vector<Check>& checks) {
       for (std::size_t l = 0; l < kRobustLaws.size(); ++l) {
         const std::size_t last = all.kept_to(a, l, w);
         if (!kRobustLaws[l].promises || last == way.levels.size()) continue;
-        Check end =
-            at_most(fmt::format("{}, {}: at most 5 mJ given with {} to [{}]", kRobustArms[a].name,
-                                info(kRobustLaws[l].kind).key, way.title, way.unit),
-                    last > 0 ? way.scale * way.levels[last - 1] : std::nan(""), 0);
-        end.unjudged = "No theory says where this ends.";
+        Check end = at_most(
+            fmt::format("{}, {}: worst {} at which at most 5 mJ are given [{}]",
+                        kRobustArms[a].name, info(kRobustLaws[l].kind).key, way.title, way.unit),
+            last > 0 ? way.scale * way.levels[last - 1] : std::nan(""), 0);
+        end.unjudged = "No theory gives this limit.";
         checks.push_back(end);
       }
     }
@@ -353,17 +355,18 @@ Outcome robust(TrialRunner& lab) {
   RobustBench bench(lab);
   const Robustness all = tap_everything(bench);
   Outcome outcome;
-  outcome.figure.title = "Promises on a device that is unlike its model";
+  outcome.figure.title = "Promises on a device that differs from its model";
   outcome.figure.caption = fmt::format(
-      "The tip taps, at {} m/s, the wall that limpid analyze names for each law and arm (at least "
-      "{} N/m). Then the hand presses with {} N or half of what the motors bear. Grips are 300 and "
-      "3,000 N/m, with 2 N s/m and without damping. Gains fitted to each arm, eta 1, tick 1 ms; "
-      "the laws are told the known delay plus one tick. Dashed lines: the built-in arm, ideal. "
-      "Solid lines: a Touch with encoder steps of 4.19e-4 rad, friction and 1 ms of delay. Energy "
-      "given is the largest in all hands; the axis shows 1e-3 mJ to 10 J. A wall is rendered well "
-      "if three conditions hold. In both grips with damping the stiffness felt is within {} % of "
-      "the set one, and the rms force above {} Hz is at most {} of the pressing force. In all "
-      "grips the hand is given at most 5 mJ. Walls from {} to {} N/m were tried.",
+      "The tip taps, at {} m/s, the wall that `limpid analyze` computes for each law and arm (at "
+      "least {} N/m). Then the hand presses with {} N, or with half of the motors' limit if that "
+      "is smaller. Grips are 300 and 3,000 N/m, with 2 N s/m and without damping. The gains are "
+      "fitted to each arm; eta = 1, tick 1 ms. The laws are told the known delay plus one tick. "
+      "Dashed lines: the built-in arm, ideal. Solid lines: a Touch with encoder steps of 4.19e-4 "
+      "rad, friction and 1 ms of delay. The energy given is the largest energy of all hands; the "
+      "axis shows 1e-3 mJ to 10 J. A wall is rendered well if three conditions hold. In both grips "
+      "with damping the stiffness felt differs from the stiffness set by at most {} %, and the rms "
+      "force above {} Hz is at most {} times the pressing force. In all grips the hand is given at "
+      "most 5 mJ. Walls from {} to {} N/m were tried.",
       WallTap::kSpeed, kSoftestTap, kHardest, 100 * kFeltOff, WallTap::kFast, kMayShake, kLeastWall,
       kMostWall);
   outcome.figure.columns = 2;

@@ -93,7 +93,7 @@ void judge(const CornerSet& set, const std::string& label, const Cornered& worst
   checks.push_back(at_most(where + "largest contact torque, divided by the motors' limit",
                            worst.torque, set.most_torque));
   checks.push_back(
-      at_most(where + "longest way of the proxy in a tick [rad]", worst.jump, kMostJump));
+      at_most(where + "longest step of the proxy in a tick [rad]", worst.jump, kMostJump));
   checks.push_back(at_least(where + "lowest reserve of the energy account [J]", worst.reserve, 0));
 }
 
@@ -117,7 +117,7 @@ Trial press(const ExperimentArm& on, const std::string& name, CouplingKind kind,
     return Vec3(kAhead, 0, kDeepest * part);
   };
   const std::string source =
-      fmt::format("the hand goes down to {} m in {} s, and goes back from {} s on, in {} s",
+      fmt::format("the hand moves down to {} m in {} s; at {} s the hand starts back, in {} s",
                   kDeepest, kReached, kPullOut, kOut - kPullOut);
   return {name, plan_in(on.description, kTableScene, hand_path(source, p.tick, kOver, at), p)};
 }
@@ -210,18 +210,19 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
   FigurePanel human{
       .title = "Human torque at the shoulder", .x_label = "time [s]", .y_label = "f1 [N m]"};
   human.series = {
-      curve(without, "estimate, wound up", kProposedTint, dashed, Column::hand_torque_estimate),
-      curve(without, "true, wound up", kProposedTint, line, Column::hand_torque),
+      curve(without, "estimate, no anti-windup", kProposedTint, dashed,
+            Column::hand_torque_estimate),
+      curve(without, "true, no anti-windup", kProposedTint, line, Column::hand_torque),
       curve(with, "estimate, anti-windup", kProposedInk, dashed, Column::hand_torque_estimate),
       curve(with, "true, anti-windup", kProposedInk, line, Column::hand_torque),
       curve(predicted, "true, predictive", kPredictiveInk, line, Column::hand_torque)};
-  FigurePanel motors{.title = "Torque of the shoulder's motor, asked and given",
+  FigurePanel motors{.title = "Torque of the shoulder's motor, commanded and given",
                      .x_label = "time [s]",
                      .y_label = "tau1 [N m]"};
   motors.series = {
-      curve(without, "asked, wound up", kProposedTint, dashed, Column::commanded_torque),
-      curve(with, "asked, anti-windup", kProposedInk, dashed, Column::commanded_torque),
-      curve(without, "given, wound up", kProposedTint, line, Column::motor_torque),
+      curve(without, "commanded, no anti-windup", kProposedTint, dashed, Column::commanded_torque),
+      curve(with, "commanded, anti-windup", kProposedInk, dashed, Column::commanded_torque),
+      curve(without, "given, no anti-windup", kProposedTint, line, Column::motor_torque),
       curve(with, "given, anti-windup", kProposedInk, line, Column::motor_torque),
       curve(predicted, "given, predictive", kPredictiveInk, line, Column::motor_torque)};
   FigurePanel lurking{.title = "Depth of device and proxy in the table, under each coupling",
@@ -236,7 +237,7 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
       depth(standard, "proxy, standard", kStandardInk, dashed, Column::proxy_position)};
   lurking.y_range = {-10, 15};
   FigurePanel out = human;
-  out.title = "Human torque at the shoulder while pulling out";
+  out.title = "Human torque at the shoulder while the hand pulls out";
   out.x_range = {kPullOut, 1.45};
   return {human, motors, lurking, out};
 }
@@ -245,12 +246,12 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
 
 void press_into_corners(TrialRunner& lab, Outcome& outcome) {
   const ExperimentArm& on = lab.arm();
-  FigurePanel torque{.title = "Pressed into random corners of walls: contact torque",
+  FigurePanel torque{.title = "Tip pressed into random corners of walls: contact torque",
                      .x_label = "limit of every motor [N m]",
                      .y_label = "largest contact torque / limit [-]"};
-  FigurePanel jump{.title = "Pressed into random corners of walls: the proxy's steps",
+  FigurePanel jump{.title = "Tip pressed into random corners of walls: the proxy's steps",
                    .x_label = "limit of every motor [N m]",
-                   .y_label = "longest way in a tick [mrad]"};
+                   .y_label = "longest step in a tick [mrad]"};
   torque.x_range = jump.x_range = {0.08, 0.62};
   torque.y_range = {0, 2};
   jump.y_range = {0, 14};
@@ -304,15 +305,15 @@ Outcome saturation(TrialRunner& lab) {
       spring(trials[2], results[2]), predicted(trials[3], results[3]);
 
   Outcome outcome;
-  outcome.figure.title = "A contact pressed beyond the torque limit, held and pulled out of";
+  outcome.figure.title =
+      "The hand presses beyond the torque limit, holds, and pulls out of the contact";
   outcome.figure.caption = fmt::format(
-      "Proposed and predictive coupling at the {}, eta = {}, motors limited to {} N m, "
-      "table 600 N/m. "
-      "With anti-windup the observer is told the torque that the motors gave. Without anti-windup "
-      "(wound up) the observer is told the torque that was asked. Last two panels: the predictive "
-      "coupling's tip pressed into a corner of one to six "
-      "planes of 100 to 10,000 N/m, rough or smooth, and rubbed along it, with motors of 0.1 to "
-      "0.6 N m; each point is one corner, drawn at random, as are arm, grip and eta.",
+      "Proposed and predictive coupling at the {}, eta = {}, motors limited to {} N m, table 600 "
+      "N/m. With anti-windup the observer is told the torque that the motors gave. Without "
+      "anti-windup the observer is told the commanded torque. Last two panels: under the "
+      "predictive coupling the tip is pressed into a corner of one to six planes of 100 to 10,000 "
+      "N/m, rough or smooth, and moved along it, with motors of 0.1 to 0.6 N m. Each point is one "
+      "corner. Corner, arm, grip and eta are chosen at random.",
       on.gains(), kEta, kLimit);
   outcome.figure.columns = 2;
   outcome.figure.panels = panels(with, without, spring, predicted);
@@ -328,18 +329,19 @@ Outcome saturation(TrialRunner& lab) {
     return run.rms(from, to, [&](std::size_t k) { return run.estimate_error(k); });
   };
   outcome.checks = {
-      at_most("anti-windup, while held: rms error of the estimate, divided by the rms true torque",
+      at_most("anti-windup, while the hand holds: rms error of the estimate, divided by the rms of "
+              "the true torque",
               error(with, kHeldFrom, kPullOut) / human(with), 0.02),
-      at_least("wound up, while the hand holds: rms of the estimated torque divided by rms of the "
-               "true torque",
+      at_least("no anti-windup, while the hand holds: rms of the estimated torque divided by rms "
+               "of the true torque",
                estimated(without) / human(without), 2),
-      at_most("wound up: deviation of the estimate from the paper's d - (tau_c - tau_m), divided "
-              "by the estimate",
+      at_most("no anti-windup: deviation of the estimate from the paper's d - (tau_c - tau_m), "
+              "divided by the estimate",
               without.off_the_law(), 0.02),
-      at_least("pull-out: rms error of the estimate without anti-windup, divided by that with "
+      at_least("pull-out: rms error of the estimate without anti-windup, divided by the error with "
                "anti-windup",
                error(without, kPullOut, kOut) / error(with, kPullOut, kOut), 3),
-      at_least("pull-out: largest pull of the hand without anti-windup, divided by that with "
+      at_least("pull-out: largest pull of the hand without anti-windup, divided by the pull with "
                "anti-windup",
                without.largest_pull() / with.largest_pull(), 1.2),
       at_least(

@@ -114,7 +114,7 @@ Outcome stack(TrialRunner& lab) {
                     .log_y = true};
   FigurePanel sweeps{.title = "Solver iterations until a tick's contact forces were found",
                      .x_label = "time [s]",
-                     .y_label = "sweeps [-]",
+                     .y_label = "iterations [-]",
                      .x_range = std::pair(0.0, kStackSeconds)};
   FigurePanel gain{.title = "Energy gained by the stack, minus energy given to the stack",
                    .x_label = "time [s]",
@@ -158,23 +158,24 @@ Outcome stack(TrialRunner& lab) {
         at_most(which + "largest energy given to the human minus the energy of the blocks [J]",
                 v.beyond, 5e-5));
     outcome.checks.push_back(
-        at_most(which + "ticks for which the proxy stood still", v.unsolved, 0));
+        at_most(which + "number of ticks without a solution, in which the proxy did not move",
+                v.unsolved, 0));
     const double last = s.at(s.size() - 1, Column::contact_force)[2];
-    outcome.checks.push_back(
-        at_most(which + "relative deviation of the final force from that of all springs in series",
-                std::abs(last / one.force() - 1), 0.02));
+    outcome.checks.push_back(at_most(
+        which + "relative deviation of the final force from the force of all springs in series",
+        std::abs(last / one.force() - 1), 0.02));
   }
-  outcome.figure.title = "Stacks with the tip on top";
+  outcome.figure.title = "Stacks of blocks, with the tip on top";
   outcome.figure.columns = 2;
   outcome.figure.panels = {sinks, sweeps, gain, force};
   outcome.figure.caption = fmt::format(
       "Blocks of {} mm stand on a floor; the coupling is the predictive one. The tip presses from "
-      "above "
-      "with {} N after {} s. Friction is 0.5. Contacts among blocks have K_o = {} N/m at each of "
-      "{} points; the tip's contact has {} N/m. The first panel shows the depths just before the "
-      "tip comes. The part above the line was there when the contact was found and gives no force. "
-      "A sweep goes once through the contacts: the solver's sweeps through the tip's contacts and "
-      "through all others are added. A stack that rests sleeps, and needs no sweeps.",
+      "above with {} N after {} s. Friction is 0.5. Contacts among blocks have K_o = {} N/m at "
+      "each of {} points; the tip's contact has {} N/m. The first panel shows the depths just "
+      "before the tip arrives. The part of a depth above the line existed when the contact was "
+      "found; it gives no force. In an iteration the solver treats each contact once. Its "
+      "iterations for the tip's contacts and for all other contacts are added. A stack at rest "
+      "sleeps, and needs no iterations.",
       1e3 * kStackEdge, kStackPress, kStackDown, kStackBetween, kStackPoints, kStackWall);
   return outcome;
 }

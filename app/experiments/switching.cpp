@@ -160,7 +160,7 @@ double books_off(const Session& s) {
 
 FigurePanel stop_panel(const Session& s) {
   FigurePanel panel{
-      .title = fmt::format("A joint goes into its stop of {} N m/rad, and out again", kStop),
+      .title = fmt::format("A joint moves into its stop of {} N m/rad and out again", kStop),
       .x_label = "time [s]",
       .y_label = "angle beyond the stop [mrad]"};
   panel.series = {
@@ -175,7 +175,8 @@ FigurePanel stop_panel(const Session& s) {
 FigurePanel gain_panel(const Session& paper, const Balance& papers, const Session& ours,
                        const Balance& own, const Balance& stiff) {
   FigurePanel panel{
-      .title = "Energy that the joint's stop gave minus the energy that was stored in the stop",
+      .title =
+          "Energy that the joint's end stop gave minus the energy that was stored in the end stop",
       .x_label = "time [s]",
       .y_label = "energy [μJ]"};
   const auto label = [](const char* law, double stop) {
@@ -251,15 +252,16 @@ Outcome switching(TrialRunner& lab) {
   outcome.figure.title = "Contacts made and broken, couplings switched";
   outcome.figure.caption = fmt::format(
       "Above: a hand of 300 N/m and 2 N s/m swings the first joint into a stop and out again at {} "
-      "Hz. The stop is flat in joint space, so there is no curvature. The energy includes what the "
-      "predictive coupling's damper took. Below: the hand presses a table of 600 N/m with {} N "
-      "while Limpid switches from each coupling to each other one. eta = 1.",
+      "Hz. The stop is flat in joint space, so there is no curvature. The energy includes the "
+      "energy that the predictive coupling's damper took. Below: the hand presses a table of 600 "
+      "N/m with {} N while Limpid switches from each coupling to each other coupling. eta = 1.",
       kSwinging, kSwitchingPress);
   outcome.figure.columns = 2;
   outcome.figure.panels = {stop_panel(ours), gain_panel(paper, papers, ours, own, stiff),
                            torque_panel(turns), apart_panel(turns)};
   outcome.checks = {
-      at_least("contacts made with each stop, predictive", std::min(own.touched, stiff.touched), 7),
+      at_least("predictive: number of contacts made with each stop",
+               std::min(own.touched, stiff.touched), 7),
       at_most("predictive: largest energy that is created when contact is made or broken [J]",
               worse(furthest(own.gain), furthest(stiff.gain)), 1e-9),
       at_least("proposed: largest energy that is created when contact is made or broken [J]",
@@ -272,7 +274,7 @@ Outcome switching(TrialRunner& lab) {
       at_most("switching while pressing: largest change of a motor's torque in a tick after the "
               "transition [N m]",
               steps.there, 0.05),
-      at_most("switching while pressing: deviation of the recorded energies from torques times "
+      at_most("law switched while pressing: difference between recorded energies and torques times "
               "motions [J]",
               books_off(turns), 1e-12)};
   return outcome;

@@ -209,7 +209,7 @@ Series scaling_line(const FeltJoint& joint, double w_f, double f, const char* in
 
 FigurePanel scaling_panel(const Felt& felt, std::size_t at_one, double w_f) {
   FigurePanel panel;
-  panel.title = "Impedance in free motion over that at eta = 1 (lines: theory)";
+  panel.title = "Impedance in free motion, divided by the impedance at eta = 1 (lines: theory)";
   panel.x_label = "eta [-]";
   panel.y_label = "|Z(eta)| / |Z(1)| [-]";
   panel.log_x = panel.log_y = true;
@@ -254,9 +254,10 @@ void free_motion(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
     const double inertia_seen = apparent_inertia(felt.seen[i], 3);
     off_inertia = worse(off_inertia, std::abs(inertia_seen / apparent_inertia(expected, 3) - 1));
   }
-  outcome.checks.push_back(at_most(
-      "free motion: deviation of the impedance from (24) in ticks, 0.5 to 50 Hz, all couplings",
-      worst_off_theory(felt, 50), 0.10));
+  outcome.checks.push_back(
+      at_most("free motion: deviation of the impedance from equation (24) in ticks, 0.5 to 50 Hz, "
+              "all couplings",
+              worst_off_theory(felt, 50), 0.10));
   outcome.checks.push_back(
       at_most("free motion: deviation of |Z| from |eta (M_L j w + b)|, 0.5 to 1 Hz, eta 0.4 to 5",
               off_low, 0.10));
@@ -264,8 +265,8 @@ void free_motion(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
       at_most("free motion: deviation of |Z| from |eta (M_L j w + b)|, 5 to 15 Hz, eta 0.4 to 1",
               off_ideal, 0.15));
   outcome.checks.push_back(
-      at_most("free motion: deviation of the inertia Im Z / w from that of (24) in ticks, up to 3 "
-              "Hz, eta 0.4 to 1",
+      at_most("free motion: deviation of the inertia Im Z / w from the inertia of equation (24) in "
+              "ticks, up to 3 Hz, eta 0.4 to 1",
               off_inertia, 0.10));
 }
 
@@ -309,7 +310,7 @@ void stiffness(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
   panel.y_label = "stiffness felt [N/m]";
   panel.log_x = panel.log_y = true;
   Series same{"as set", kNeutralInk, Series::Style::dashed, {}};
-  Series soft{"in series with k_vc", kContactInk, Series::Style::line, {}};
+  Series soft{"wall in series with k_vc", kContactInk, Series::Style::line, {}};
   Series points[] = {{"standard", kStandardInk, Series::Style::points, {}},
                      {"proposed", kProposedInk, Series::Style::points, {}}};
   double off_series = 0, off_wall = 0;
@@ -329,9 +330,10 @@ void stiffness(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
       at_most("standard: deviation of the stiffness felt from 1 / (1/K + r^2/k_vc), walls of 50 to "
               "1000 N/m",
               off_series, 0.02));
-  outcome.checks.push_back(at_most(
-      "proposed: deviation of the stiffness felt from that of the wall, walls of 50 to 1000 N/m",
-      off_wall, 0.03));
+  outcome.checks.push_back(
+      at_most("proposed: deviation of the stiffness felt from the wall's stiffness, walls of 50 to "
+              "1000 N/m",
+              off_wall, 0.03));
 }
 
 }  // namespace
@@ -364,12 +366,12 @@ Outcome transparency(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "Transparency: what the hand feels";
   outcome.figure.caption = fmt::format(
-      "{} at the {}, tip {} m ahead, moved sideways so that only the first "
-      "joint turns. Human torque over velocity of that joint, the hand shaking with all "
-      "frequencies from {} to {} Hz together in an undamped grip of {} N/m; in contact it presses "
-      "with {} N and damps with {} N s/m. Without that damper the proposed coupling is unstable at "
-      "this wall: its contact torque trails by b_v/k_vc + T/2, which takes more damping than there "
-      "is.",
+      "{} at the {}. The tip is {} m ahead and moves sideways, so that only the first joint turns. "
+      "The impedance is the human torque divided by the velocity of that joint. The hand shakes "
+      "with all frequencies from {} to {} Hz together in an undamped grip of {} N/m; in contact "
+      "the hand presses with {} N and damps with {} N s/m. Without that damper the proposed "
+      "coupling is unstable at this wall: its contact torque is delayed by b_v/k_vc + T/2, which "
+      "needs more damping than there is.",
       lab.arm().heading(), lab.arm().gains(), Bench::kArm, Bench::kLowest, Bench::kHighest,
       Bench::kGrip, Bench::kPress, Bench::kGripDamping);
   outcome.figure.columns = 2;

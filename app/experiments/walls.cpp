@@ -1,4 +1,4 @@
-// Walls of random arms: tapped at the stiffness that `limpid analyze` names for each.
+// Walls of random arms: tapped at the stiffness that `limpid analyze` computes for each.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -178,13 +178,15 @@ void add_line(FigurePanel& panel, double value, const std::string& label) {
 }
 
 std::vector<FigurePanel> draw(const std::vector<Felts>& felts) {
-  FigurePanel named = against_mass(felts, "The wall that limpid analyze names", "stiffness [N/m]",
-                                   {10, 30000}, [](const WallFelt& f) { return f.named; });
-  FigurePanel felt = against_mass(felts, "Stiffness felt, divided by the set one", "felt / set [-]",
-                                  {0, 1.5}, [](const WallFelt& f) { return f.felt; });
+  FigurePanel named =
+      against_mass(felts, "The wall that `limpid analyze` computes", "stiffness [N/m]", {10, 30000},
+                   [](const WallFelt& f) { return f.named; });
+  FigurePanel felt =
+      against_mass(felts, "Stiffness felt, divided by the stiffness set", "felt / set [-]",
+                   {0, 1.5}, [](const WallFelt& f) { return f.felt; });
   FigurePanel rattle = against_mass(
-      felts, "Force above 20 Hz while it is held, divided by what is allowed",
-      "rms force, of that allowed [-]", {1e-4, 100}, [](const WallFelt& f) { return f.rattle; });
+      felts, "Force above 20 Hz while the hand presses, divided by the force allowed",
+      "rms force / force allowed [-]", {1e-4, 100}, [](const WallFelt& f) { return f.rattle; });
   FigurePanel given = against_mass(felts, "Largest energy given to the hand", "energy [mJ]",
                                    {1e-3, 1000}, [](const WallFelt& f) { return 1e3 * f.port; });
   named.log_y = rattle.log_y = given.log_y = true;
@@ -208,13 +210,15 @@ void judge(const std::vector<Felts>& felts, std::vector<Check>& checks) {
       if (!(std::abs(felt.felt - 1) <= std::abs(worst.felt - 1))) worst.felt = felt.felt;
     }
     const std::string where = step_label(P::kSteps[q]) + ": ";
+    checks.push_back(at_least(
+        where + fmt::format("number of arms for which `limpid analyze` computes a wall, of {} arms",
+                            P::kArms),
+        walls, P::kNamed[q]));
     checks.push_back(
-        at_least(where + fmt::format("arms for which analyze names a wall, of {}", P::kArms), walls,
-                 P::kNamed[q]));
-    checks.push_back(at_most(where + "relative deviation of the stiffness felt from the set one",
-                             std::abs(worst.felt - 1), P::kOff));
+        at_most(where + "relative deviation of the stiffness felt from the stiffness set",
+                std::abs(worst.felt - 1), P::kOff));
     checks.push_back(
-        at_most(where + "rms force above 20 Hz, divided by what is allowed", worst.rattle, 1));
+        at_most(where + "rms force above 20 Hz, divided by the force allowed", worst.rattle, 1));
     checks.push_back(
         at_most(where + "largest energy given to the human [J]", worst.port, P::kGiven));
   }
@@ -226,15 +230,15 @@ Outcome walls(TrialRunner& lab) {
   const std::vector<Felts> felts = tap_all(lab);
   Outcome outcome;
   using P = WallsPlan;
-  outcome.figure.title = "Walls on any arm, with the stiffness that `limpid analyze` names";
+  outcome.figure.title = "Walls for any arm, with the stiffness that `limpid analyze` computes";
   outcome.figure.caption = fmt::format(
       "Predictive coupling, eta = 1. There are {} random arms of 1 to {} joints and {} to {} kg, "
-      "each in another pose. The tip taps a wall at {} m/s along the direction in which the arm's "
-      "dampers hold the tip least. Then the hand presses with {} N, or with half of what the "
-      "motors bear. Desktop devices are held in grips of {} and {} N/m, arms from {} kg on in "
-      "grips of {} and {} N/m; the worse grip is drawn. The rms force allowed above {} Hz is {} of "
-      "the pressing force, and {} N for robots. Points outside a frame are drawn at the frame's "
-      "edge.",
+      "each in a different pose. The tip taps a wall at {} m/s along the direction in which the "
+      "arm's dampers brake the tip least. Then the hand presses with {} N, or with half of the "
+      "motors' limit if that is smaller. Desktop devices are held in grips of {} and {} N/m, arms "
+      "of {} kg or more in grips of {} and {} N/m; the worse grip is drawn. The rms force allowed "
+      "above {} Hz is {} times the pressing force, and {} N for robots. Points outside a frame are "
+      "drawn at the frame's edge.",
       P::kArms, P::kMostJoints, P::kLightest, P::kHeaviest, WallTap::kSpeed, P::kPress,
       P::kDesktopGrips[0].stiffness, P::kDesktopGrips[1].stiffness, P::kRobot,
       P::kRobotGrips[0].stiffness, P::kRobotGrips[1].stiffness, WallTap::kFast, P::kRattle,

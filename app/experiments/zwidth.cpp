@@ -116,26 +116,26 @@ std::vector<FigurePanel> empty_panels(const ExperimentArm& on) {
                        .y_range = std::pair(0.8 * kSoftest, 1.5 * kStiffest)};
   };
   std::vector<FigurePanel> panels{
-      panel("Over eta", "eta [-]", 0.1, 10),
-      panel("Over the tick, eta = 1", "tick [ms]", 0.1, 10),
-      panel("Over the encoders' resolution, eta = 1", "encoder step [mrad]", 0.009, 1.1),
-      panel("Over the hand's mass, eta = 1", "mass of the hand at the tip [kg]", 0.018, 1.1),
-      panel("Over the device's delay, eta = 1", "delay [ms]", -0.2, 6.2),
+      panel("Against eta", "eta [-]", 0.1, 10),
+      panel("Against the tick, eta = 1", "tick [ms]", 0.1, 10),
+      panel("Against the encoder step, eta = 1", "encoder step [mrad]", 0.009, 1.1),
+      panel("Against the hand's mass, eta = 1", "mass of the hand at the tip [kg]", 0.018, 1.1),
+      panel("Against the device's delay, eta = 1", "delay [ms]", -0.2, 6.2),
       panel(fmt::format("With the arm's own motors, pressed with {} N", kOwnPress), "eta [-]", 0.1,
             10)};
   panels[4].log_x = false;
-  panels[0].series = {theory("proposed: damping over lag", kProposedInk, 0.2, 4,
+  panels[0].series = {theory("proposed: damping divided by lag", kProposedInk, 0.2, 4,
                              [&](double eta) { return law.proposed(eta, T); }),
                       theory("stiffest plain spring that is passive in every hand", kNeutralInk,
                              0.2, 4, [&](double) { return law.any_linear(T); })};
-  panels[1].series = {theory("proposed: damping over lag", kProposedInk, 0.25, 2,
+  panels[1].series = {theory("proposed: damping divided by lag", kProposedInk, 0.25, 2,
                              [&](double ms) { return law.proposed(1, 1e-3 * ms); }),
                       theory("stiffest plain spring that is passive in every hand", kNeutralInk,
                              0.25, 2, [&](double ms) { return law.any_linear(1e-3 * ms); })};
-  panels[3].series = {theory("one predictor: what its error gives away", kEnergyInk, 0.02, 1,
+  panels[3].series = {theory("one predictor: energy given by its error", kEnergyInk, 0.02, 1,
                              [&](double m) { return law.mistaken(m, T); })};
   panels[4].series = {theory(
-                          "proposed: damping over lag", kProposedInk, 0, 6,
+                          "proposed: damping divided by lag", kProposedInk, 0, 6,
                           [&](double ms) { return law.proposed(1, T, 1e-3 * ms); }, true),
                       theory(
                           "stiffest plain spring that is passive in every hand", kNeutralInk, 0, 6,
@@ -158,7 +158,8 @@ struct Found {
     }
     return least;
   }
-  // The least ratio of a wall to the one that `limpid analyze` names, clamped to the walls tried.
+  // The least ratio of a wall to the one that `limpid analyze` computes, clamped to the walls
+  // tried.
   double least_of_named(std::size_t curve) const {
     double least = HUGE_VAL;
     for (std::size_t i = 0; i < walls[curve].size(); ++i) {
@@ -236,7 +237,7 @@ void judge_taps(TrialRunner& lab, std::vector<Check>& checks) {
                 fine = worst_tap(lab, {.encoder_step = kFine, .hand_mass = mass});
     checks.push_back(at_most(where + ", exact encoders: highest E_c [J]", exact.energy, 5e-5));
     checks.push_back(at_most(
-        where + ", exact encoders: relative deviation of the stiffness felt from the set one",
+        where + ", exact encoders: relative deviation of the stiffness felt from the stiffness set",
         std::abs(exact.felt - 1), 0.01));
     checks.push_back(at_most(where + ", exact encoders: chatter [m/s]", exact.chatter, quiet));
     checks.push_back(at_most(
@@ -248,8 +249,9 @@ void judge_taps(TrialRunner& lab, std::vector<Check>& checks) {
   const std::string where =
       fmt::format("5000 N/m, eta 0.3 to 1, the arm's own motors, pressed with {} N: ", kOwnPress);
   checks.push_back(at_most(where + "highest E_c [J]", own.energy, 5e-5));
-  checks.push_back(at_most(where + "relative deviation of the stiffness felt from the set one",
-                           std::abs(own.felt - 1), 0.01));
+  checks.push_back(
+      at_most(where + "relative deviation of the stiffness felt from the stiffness set",
+              std::abs(own.felt - 1), 0.01));
   checks.push_back(at_most(where + "chatter [m/s]", own.chatter, 1e-4));
 }
 
@@ -263,14 +265,16 @@ void judge_named(const Found& found, std::vector<Check>& checks) {
       {3, "ticks of 0.25 to 2 ms"},
       {4, "ticks of 0.25 to 2 ms, encoders of 1e-4 rad"},
       {6, "encoders of 1e-5 to 1e-3 rad"},
-      {8, "hands to 1 kg"},
-      {9, "hands to 1 kg, one predictor"},
-      {11, "delays to 6 ms, known"},
-      {12, "delays to 6 ms, known, encoders of 1e-4 rad"},
-      {13, "delays to 6 ms, not known"}};
+      {8, "hands up to 1 kg"},
+      {9, "hands up to 1 kg, one predictor"},
+      {11, "delays up to 6 ms, known"},
+      {12, "delays up to 6 ms, known, encoders of 1e-4 rad"},
+      {13, "delays up to 6 ms, not known"}};
   for (const auto& [curve, which] : kCurves) {
     checks.push_back(at_least(
-        fmt::format("predictive, {}: stiffest wall, divided by the one that analyze names", which),
+        fmt::format(
+            "predictive, {}: stiffest wall, divided by the wall that `limpid analyze` computes",
+            which),
         found.least_of_named(curve), finest));
   }
 }
@@ -283,16 +287,16 @@ Outcome zwidth(TrialRunner& lab) {
   outcome.figure.title = "The stiffest wall that is rendered well";
   outcome.figure.caption = fmt::format(
       "The tip taps a wall at {} m/s, presses with {} N and holds, in grips of {} and {} N/m with "
-      "{} N s/m. Where not varied, the tick is 1 ms, encoders are exact, and there is no mass of "
-      "the hand and no delay. Motors of {} N m never meet their limit; the last panel has the "
-      "arm's own motors. A wall is rendered well if the human is given at most {} mJ, the rms "
-      "speed of the tip above {} Hz is at most {} mm/s, and the stiffness felt is within {} % of "
-      "the set one. With exact encoders E_c must be at most {} mJ as well. Walls of {} to {} N/m "
-      "were tried. A curve at the top has no limit in this range. A "
-      "curve at the bottom has no wall that is rendered well. Each quantity is varied alone "
-      "or together with the encoder step. Not covered are a delay, another tick and a mass at the "
-      "same time. Other arms are in the experiment walls, other etas under a delay in the "
-      "experiment delay.",
+      "{} N s/m. If a quantity is not varied: the tick is 1 ms, encoders are exact, the hand has "
+      "no mass, and there is no delay. Motors of {} N m never reach their limit; the last panel "
+      "has the arm's own motors. A wall is rendered well if the human is given at most {} mJ, the "
+      "rms speed of the tip above {} Hz is at most {} mm/s, and the stiffness felt differs from "
+      "the stiffness set by at most {} %. With exact encoders E_c must be at most {} mJ as well. "
+      "Walls of {} to {} N/m were tried. Where a curve is at the top, no wall of this range is too "
+      "stiff. Where a curve is at the bottom, no wall is rendered well. Each quantity is varied "
+      "alone or together with the encoder step. A delay, another tick and a mass at the same time "
+      "were not tried. The experiment walls has other arms, the experiment delay has other etas "
+      "with a delay.",
       TapBench::kSpeed, TapSetting{}.press, kGrips[0], kGrips[1], TapBench::kGripDamping,
       TapSetting{}.torque_limit, 1e3 * WellRendered::kPort, TapBench::kFast,
       1e3 * WellRendered::kChatter, 100 * WellRendered::kFelt, 1e3 * WellRendered::kEnergy,
@@ -302,9 +306,9 @@ Outcome zwidth(TrialRunner& lab) {
   const auto any = [](double) { return true; };
   outcome.checks = {at_least("predictive: stiffest wall, exact encoders, eta 0.2 to 4 [N/m]",
                              found.softest(0, any), 10000),
-                    at_least("predictive: stiffest wall, exact encoders, hands to 0.2 kg [N/m]",
+                    at_least("predictive: stiffest wall, exact encoders, hands up to 0.2 kg [N/m]",
                              found.softest(8, [](double mass) { return mass <= 0.2; }), 10000),
-                    at_least("predictive: stiffest wall, encoders to 1e-4 rad [N/m]",
+                    at_least("predictive: stiffest wall, encoders up to 1e-4 rad [N/m]",
                              found.softest(6, [](double step) { return step <= kFine; }), 5000),
                     at_least("predictive: stiffest wall, encoders of 5e-4 rad [N/m]",
                              found.softest(6, [](double step) { return step == 5e-4; }), 1000),

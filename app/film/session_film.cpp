@@ -375,12 +375,13 @@ double FilmCut::time(std::size_t picture) const {
 }
 
 FilmCut cut(const FilmOrder& order, const Session& session, const std::string& where) {
-  if (session.size() == 0) throw FileError(where + ": holds no rows");
+  if (session.size() == 0) throw FileError(where + ": contains no rows");
   const double length = static_cast<double>(session.size()) * session.info.tick;
   const double to = order.to.value_or(length);
   if (!(order.from >= 0 && order.from < to && to <= length * (1 + 1e-9))) {
-    throw FileError(fmt::format("{}: from {} to {} s; allowed: from 0 to {} s, forwards", where,
-                                order.from, to, length));
+    throw FileError(
+        fmt::format("{}: from {} to {} s; allowed: from 0 to {} s, the end after the beginning",
+                    where, order.from, to, length));
   }
   return {order.from, to, order.speed, order.fps.value_or(usual_fps(video_kind(order.out)))};
 }

@@ -225,7 +225,7 @@ StreamFile::StreamFile(const std::filesystem::path& file, const VideoFormat& for
 void StreamFile::add(std::span<const unsigned char> rgba) {
   const std::size_t line = 4 * static_cast<std::size_t>(format_.width);
   if (rgba.size() != line * static_cast<std::size_t>(format_.height)) {
-    throw std::invalid_argument("a picture's size and the video's do not agree");
+    throw std::invalid_argument("the size of a picture differs from the size of the video");
   }
   if (!frame_) {
     convert_ = converter(format_, codec_->pix_fmt);
@@ -401,7 +401,7 @@ struct VideoFile::Impl {
   void publish_pictures() const {
     if (!fs::exists(out)) return fs::rename(part, out);
     if (!force && !fs::is_empty(out))
-      throw std::runtime_error("the folder has been filled meanwhile");
+      throw std::runtime_error("the folder is no longer empty: other files were written into it");
     for (const fs::path& file : pictures_in(out)) fs::remove(file);
     for (const fs::path& file : pictures_in(part)) fs::rename(file, out / file.filename());
   }

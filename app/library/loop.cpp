@@ -84,7 +84,7 @@ void compare_range(const ArmDescription& arm, std::size_t joint, double x,
   constexpr double kBeyond = 0.1;  // part of the range
   const double room = kBeyond * (of.upper - of.lower);
   if (x < of.lower - room || x > of.upper + room) {
-    throw LoopError(fmt::format("position: joint {} has {:.4g}; needed: {}, as the arm has it",
+    throw LoopError(fmt::format("position: joint {} has {:.4g}; needed: {}, the arm's range",
                                 joint + 1, x * unit, range));
   }
   notes.push_back(fmt::format("joint {} begins at {:.4g}, outside of its range of {}", joint + 1,
@@ -352,7 +352,7 @@ void Loop::record(const std::string& file, bool replace) {
   State& s = *state_;
   if (s.recorder) throw LoopError(file + ": " + s.recorder->out().string() + " is being recorded");
   if (!replace && std::filesystem::exists(file)) {
-    throw LoopError(file + ": exists, and is not to be replaced");
+    throw LoopError(file + ": exists already, and replace is not set");
   }
   as_recording([&] {
     RunPlan recorded = s.plan;
@@ -376,7 +376,8 @@ DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> posit
     : Loop(as_library([&] {
         // A device is no arm that happens to be the default.
         if (options.motors == Motors::real && options.arm.empty() && options.arm_text.empty()) {
-          throw LoopError("arm: is missing; a device with real motors needs its own arm");
+          throw LoopError(
+              "arm: is missing; a device with real motors needs an arm file made for it");
         }
         auto state = std::make_unique<State>(read_plan(options, true), options);
         state->device.emplace(state->plan.arm, state->real);
@@ -452,7 +453,7 @@ SimulatedLoop::SimulatedLoop(const LoopOptions& options)
 
 void SimulatedLoop::start(Point3 target) {
   State& s = *state_;
-  if (s.recorder) throw LoopError("start: a recording is under way; finish it first");
+  if (s.recorder) throw LoopError("start: a recording is running; finish the recording first");
   const auto outside = [&](const std::string& why) {
     return LoopError(fmt::format("start: target: ({:.4g}, {:.4g}, {:.4g}) m: {}", target[0],
                                  target[1], target[2], why));
@@ -483,8 +484,7 @@ SimulatedLoop::RunEnd SimulatedLoop::run(std::span<const double> path, double du
   return as_library([&]() -> RunEnd {
     if (!take) throw LoopError("take: is empty; needed: a function that takes each row");
     if (!(duration >= 0) || !std::isfinite(duration)) {
-      throw LoopError(
-          fmt::format("duration: {} is not allowed; allowed: seconds, from 0 on", duration));
+      throw LoopError(fmt::format("duration: {} is not allowed; allowed: 0 s or more", duration));
     }
     RunPlan plan = state_->plan;
     plan.hand = hand_of_rows(path);

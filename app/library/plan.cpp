@@ -55,7 +55,7 @@ Parameters chosen(const LoopOptions& options, Parameters base) {
   if (!options.config.empty()) apply_config(base, options.config);
   for (const std::string& setting : options.settings) apply_setting(base, setting);
   if (base.tick != Parameters{}.tick && base.tick != options.period) {
-    throw FieldError("loop.tick: is the option `period` here");
+    throw FieldError("loop.tick: is set here by the option `period`");
   }
   set_parameter(base, "loop.tick", options.period);
   return base;
@@ -69,12 +69,13 @@ void refuse_simulated(std::string_view key, bool device) {
                                                   : nullptr;
   if (whose == nullptr) return;
   throw FieldError(
-      fmt::format("{}: is of the simulated {}, which a DeviceLoop has not", key, whose));
+      fmt::format("{}: belongs to the simulated {}, which a DeviceLoop does not have", key, whose));
 }
 
 void refuse_fixed(const ParameterInfo& info) {
   if (info.live) return;
-  throw FieldError(std::string(info.key) + ": is fixed once the loop is made; make another loop");
+  throw FieldError(std::string(info.key) +
+                   ": cannot change after the loop is made; make another loop");
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ LibraryPlan read_plan(const LoopOptions& options, bool device) {
     if (!std::isnan(fit.damping)) {
       all.notes.push_back(fmt::format(
           "the arm's joints have no damping: gains are fitted as if they had {:.3g} N m s/rad, and "
-          "the account of energy counts none; set the real value in device.damping",
+          "the energy account counts no damping; set the real value in device.damping",
           fit.damping));
     }
     fit.damping = kFromArm;
@@ -127,7 +128,7 @@ HandPath hand_of_rows(std::span<const double> rows) {
       throw FileError(fmt::format("path: row {}: is not finite", time.size() + 1));
     }
     if (!time.empty() && t <= time.back()) {
-      throw FileError(fmt::format("path: row {}: time {} after {}; needed: a later one",
+      throw FileError(fmt::format("path: row {}: time {} follows time {}; needed: a later time",
                                   time.size() + 1, row[0], rows[0] + time.back()));
     }
     time.push_back(t);
@@ -147,7 +148,8 @@ SafetyLimits limits_of(const LoopLimits& wanted) {
 
 std::string meant_or(std::string_view name, const std::vector<std::string>& all, const char* list) {
   const auto meant = nearest(name, all);
-  return meant ? fmt::format("did you mean {}?", *meant) : fmt::format("{} has all of them", list);
+  return meant ? fmt::format("did you mean {}?", *meant)
+               : fmt::format("{} lists all of them", list);
 }
 
 const ParameterInfo& setting_named(std::string_view key) {

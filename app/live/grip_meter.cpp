@@ -10,7 +10,7 @@ namespace limpid {
 std::string GripMeter::why_not() const {
   const LiveLoop& loop = session_.loop();
   if (busy()) return "The grip is being measured now.";
-  if (!loop.device_in_place() && session_.controls().paused) return "Time is paused.";
+  if (!loop.device_in_place() && session_.controls().paused) return "The simulation is paused.";
   if (loop.snapshot().arming != Arming::on) return "The force is off. Arm the force first.";
   return {};
 }

@@ -370,7 +370,7 @@ void LiveLoop::publish(const TickTiming& timing) {
 
 void LiveLoop::record(std::unique_ptr<Recorder> recorder) {
   if (recorder->stride() / recorder->lanes() * kMostLanes != trace_->stride()) {
-    throw std::invalid_argument("the recording was begun for an arm of other joints");
+    throw std::invalid_argument("the recording was begun for an arm with other joints");
   }
   if (in_place_ && recorder->lanes() > 1) {
     throw std::invalid_argument(

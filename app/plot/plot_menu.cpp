@@ -20,7 +20,7 @@ std::filesystem::path save_text(const std::filesystem::path& file, const std::st
   out.close();
   if (!out) {
     throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(),
-                                         errno != 0 ? std::strerror(errno) : "unknown why"));
+                                         errno != 0 ? std::strerror(errno) : "unknown reason"));
   }
   return file;
 }

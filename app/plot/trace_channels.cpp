@@ -45,22 +45,22 @@ std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
   std::vector<ChannelInfo> infos{
       {"coupling/kind", "Coupling", "law", "law", "-", kLawNumbers.data(), neutral},
       {"coordination/error", "Coordination error", "of all joints, |x_E|", "|x_E|", units.angle,
-       "distance of device and proxy, over all joints", proxy},
+       "distance between device and proxy, norm of all joints", proxy},
       {"energy/controller_total", "Energy", "controller, E_c", "E_c", "J",
        "E_c with the device's own damping", energy},
       {"energy/controller_commanded", "Energy", "controller, commanded", "E_c commanded", "J",
-       "work of motors and proxy alone. E_c also subtracts what the device's own damping took, and "
-       "is the energy of the passivity condition",
+       "work of motors and proxy only. E_c also subtracts the energy that the device's own damping "
+       "took; E_c is the energy in the passivity condition",
        energy, 0.5f, true, true},
       {"energy/compensation", "Energy", "motors, against the device's own forces", "compensation",
-       "J", "part of E_c that the motors gave against weight, springs and friction of the device",
+       "J", "part of E_c that the motors gave to hold weight, springs and friction of the device",
        energy, 0.3f, true, true},
       {"hand/torque_norm", "Hand", "torque, |f1|", "|f1|", units.torque,
-       "what the hand puts on the device; of a real device the observer's estimate", hand},
+       "torque of the hand on the device; for a real device it is the observer's estimate", hand},
       {"hand/torque_estimate_norm", "Hand", "torque as observed, |f1_hat|", "|f1| estimate",
        units.torque, "the observer's estimate of the hand's torque", hand, 0.55f, true, true},
       {"proxy/contact_torque_norm", "Proxy", "contact torque, |f2|", "|f2|", units.torque,
-       "what the scene puts on the proxy", contact},
+       "torque of the scene on the proxy", contact},
       {"device/limited", "Device", "a motor at its limit", "at limit", "-",
        "1 while a motor gives its largest torque", device},
   };
@@ -69,7 +69,7 @@ std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
     infos.push_back({"coordination/error." + joint, "Coordination error", "joint " + joint,
                      "x_E " + joint,
                      joint_units[joint_units.size() == 1 ? 0 : static_cast<std::size_t>(j)],
-                     "position of the device minus that of the proxy",
+                     "position of the device minus position of the proxy",
                      static_cast<Ink>(static_cast<int>(joint_1) + j % kJointInks)});
   }
   return infos;
@@ -264,15 +264,15 @@ void TraceChannels::add_tips() {
                     .name = "gap of the tips",
                     .label = "gap",
                     .unit = "m",
-                    .help = "how far the tips of device and proxy are apart: how deep the hand's "
-                            "device is in what the proxy touches",
+                    .help = "distance between the tips of device and proxy; in contact it tells "
+                            "how deep the device's tip is in the object that the proxy touches",
                     .ink = proxy});
   infos_.push_back({.key = "contact/total_force_norm",
                     .group = "Contacts",
                     .name = "force at the tip, |F|",
                     .label = "|F|",
                     .unit = "N",
-                    .help = "how hard the scene pushes on the proxy, all contacts together",
+                    .help = "total force of all contacts of the scene on the proxy",
                     .ink = contact});
 }
 
@@ -294,9 +294,9 @@ void TraceChannels::add_bodies(const std::vector<std::string>& names) {
     const char *key, *unit, *help;
   };
   constexpr std::array<Quantity, kOfBody> kQuantities{{
-      {"x", "m", "its centre of mass, forward"},
-      {"y", "m", "its centre of mass, to the left"},
-      {"z", "m", "its centre of mass, upward"},
+      {"x", "m", "position of its centre of mass, forward"},
+      {"y", "m", "position of its centre of mass, to the left"},
+      {"z", "m", "height of its centre of mass"},
       {"speed", "m/s", "how fast its centre of mass moves"},
       {"turning", "rad/s", "how fast it turns, about any axis"},
   }};

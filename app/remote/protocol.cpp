@@ -29,28 +29,33 @@ constexpr std::array kPicture{"file", "replace"};
 
 constexpr std::array kVerbs{
     Verb{"hello", kNone, "which version of Limpid this is, and what it offers"},
-    Verb{"get", kGet, "gives the settings, all or those of \"keys\", and the state"},
+    Verb{"get", kGet, "gives the settings (all, or only those in \"keys\") and the state"},
     Verb{"set", kSet,
-         "sets the \"values\" of settings, all or none; \"twin\": true sets the twin's, \"lane\": "
-         "2 the third run's; \"reset\": true gives all other settings their usual values"},
+         "sets the \"values\" of settings; if one is wrong, none is set; \"twin\": true sets those "
+         "of the twin (second run), \"lane\": 2 those of the third run; \"reset\": true gives all "
+         "other settings their usual values"},
     Verb{"open", kOpen, "opens a scene, an arm, a session or a hand's path"},
     Verb{"record", kRecord,
          "records every tick, into \"file\" or a new file of the user's sessions; \"force\": true "
          "replaces an existing file"},
     Verb{"stop", kNone, "ends the recording; answers once the file is complete"},
     Verb{"start_over", kNone,
-         "starts over, at rest in the middle or at the beginning of the hand's path"},
-    Verb{"mark", kMark, "notes \"text\" in the plots and in the recording; answers with the tick"},
-    Verb{"row", kRow, "gives the newest row, of all \"channels\" or some"},
+         "starts again, at rest in the middle or at the beginning of the hand's path"},
+    Verb{"mark", kMark,
+         "writes \"text\" as a mark into the plots and into the recording; answers with the tick"},
+    Verb{"row", kRow, "gives the newest row, with all channels or only those in \"channels\""},
     Verb{"follow", kFollow,
-         "sends rows of \"channels\" from now on, \"rate\" rows a second; no channels end the "
-         "sending"},
+         "sends rows of \"channels\" from now on, \"rate\" rows per second; an empty list of "
+         "channels ends the sending"},
     Verb{"twin", kTwin,
-         "adds a second run with the same hand and own \"values\"; \"lane\": 2 adds a third run"},
-    Verb{"blind", kBlind, "the window hides law, settings and plots while this client is there"},
+         "adds a second run with the same hand and its own \"values\"; \"lane\": 2 adds a third "
+         "run"},
+    Verb{"blind", kBlind,
+         "the window hides law, settings and plots while this client is connected"},
     Verb{"ask", kAsk,
-         "asks a person \"text\"; answers with the choice out of \"choices\" and the time it took; "
-         "\"beside\": true leaves the picture usable; \"seconds\" limits the time"},
+         "asks a person the question \"text\"; returns the answer, one of \"choices\", and the "
+         "time it took; with \"beside\": true the picture can still be used; \"seconds\" limits "
+         "the time"},
     Verb{"picture", kPicture,
          "draws the picture into \"file\", a PNG; \"replace\": true replaces an existing file"},
     Verb{"cut", kNone, "cuts the force at once"},
@@ -71,8 +76,10 @@ std::string names_of_verbs() {
 json parse(std::string_view line) {
   const auto shallow = [](int depth, json::parse_event_t, json&) {
     if (depth <= kDeepest) return true;
-    throw RemoteError(fmt::format(
-        "a line has lists and objects at most {} deep; this line has deeper ones", kDeepest));
+    throw RemoteError(
+        fmt::format("lists and objects of a line may be nested at most {} deep; those of this line "
+                    "are nested deeper",
+                    kDeepest));
   };
   try {
     return json::parse(line.begin(), line.end(), shallow);
@@ -82,7 +89,8 @@ json parse(std::string_view line) {
       if (c < 0x20 || c == 0x7F) c = '?';
     }
     throw RemoteError(fmt::format(
-        R"(a line holds one JSON object, as {{"id": 1, "do": "hello"}}; found: {})", start));
+        R"(a line must be one JSON object, for example {{"id": 1, "do": "hello"}}; found: {})",
+        start));
   }
 }
 
@@ -117,7 +125,7 @@ Request read_request(std::string_view line, json& id) {
   id = nullptr;
   json whole = parse(line);
   if (!whole.is_object()) {
-    throw RemoteError("a line holds one JSON object; found: " + shown(whole));
+    throw RemoteError("a line must be one JSON object; found: " + shown(whole));
   }
   if (const auto given = whole.find("id"); given != whole.end()) {
     const bool short_text =
@@ -185,8 +193,9 @@ std::string Keys::text(const char* key) const {
 std::filesystem::path Keys::file(std::string_view ending) const {
   std::filesystem::path named = text("file");
   if (!named.is_absolute() || named.extension() != ending) {
-    throw error("file", fmt::format("{} is not allowed; allowed: a path from / on, ending in {}",
-                                    shown(named.string()), ending));
+    throw error("file",
+                fmt::format("{} is not allowed; allowed: a path that begins with / and ends in {}",
+                            shown(named.string()), ending));
   }
   return named;
 }

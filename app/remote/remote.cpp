@@ -41,7 +41,8 @@ std::string channel_hint(const TraceChannels& channels, const std::string& name)
   if (const auto meant = meant_channel(channels, name)) {
     return fmt::format("did you mean {}?", *meant);
   }
-  return "allowed: those of sessions, as hand/torque, and those that `row` without channels lists";
+  return "allowed: the channels of sessions, for example hand/torque, and the channels that `row` "
+         "without channels lists";
 }
 
 }  // namespace
@@ -155,7 +156,7 @@ Answer Remote::act(const Request& request, Client client) {
   if (verb == "bye") return json::object();
   const auto found = host_.actions.find(std::string(verb));
   if (found != host_.actions.end()) return found->second(keys, client);
-  throw RemoteError(fmt::format("{}: needs a window; `limpid --listen` has one", verb));
+  throw RemoteError(fmt::format("{}: needs a window; `limpid --listen` opens a window", verb));
 }
 
 // Answers earlier requests that are done, or have failed, by now.
@@ -213,7 +214,7 @@ json Remote::get(const Keys& keys) const {
   if (wanted) {
     for (const std::string& key : *wanted) {
       const ParameterInfo* info = find_parameter(key);
-      if (info == nullptr) throw keys.error("keys", shown(key) + " is no setting");
+      if (info == nullptr) throw keys.error("keys", shown(key) + " is not a setting");
       add(*info);
     }
   } else {

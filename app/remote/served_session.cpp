@@ -162,7 +162,7 @@ Answer ServedSession::open(const Keys& keys) {
   if (loop().device_in_place() &&
       (!asked.arm.empty() || !asked.session.empty() || !asked.hand.empty())) {
     throw RemoteError(
-        "open: a person's hand leads a real device, so arm, session and hand cannot be opened; "
+        "open: a person's hand moves a real device, so arm, session and hand cannot be opened; "
         "allowed: scene");
   }
   if (asked.scene.empty() && asked.arm.empty() && asked.session.empty() && asked.hand.empty()) {
@@ -192,8 +192,8 @@ Answer ServedSession::open(const Keys& keys) {
     }
     if (count_bodies(world.plan.document.scene) != loop().layout().bodies()) {
       throw RemoteError(
-          "open: scene: has another number of objects that move; needed: as many as now, because a "
-          "real device is in use");
+          "open: scene: has a different number of objects that move; needed: the same number as "
+          "now, because a real device is in use");
     }
     loop().cut();
     session_.touch(world_.plan.arm, world.plan.document.scene);

@@ -78,25 +78,28 @@ Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const 
 
 // Judges spring and damper alone.
 Passivity by_condition3(const Condition3& c) {
-  if (!c.known) return {std::nullopt, "no bound is known because packets are lost (link.loss)"};
-  return {c.holds, c.holds ? "condition (3) holds" : "condition (3) is broken"};
+  if (!c.known) return {std::nullopt, "no limit is known because packets are lost (link.loss)"};
+  return {c.holds, c.holds ? "condition (3) is met" : "condition (3) is broken"};
 }
 
 Passivity of_feedforward(const Analysis& a, const Parameters& p) {
-  if (!a.above_eta_min) return {false, fmt::format("eta is below eta_min {:.4f}, (25)", a.eta_min)};
+  if (!a.above_eta_min)
+    return {false, fmt::format("eta is below eta_min {:.4f}, equation (25)", a.eta_min)};
   if (p.eta < a.eta_min_compliant) {
     return {false, fmt::format("eta is below {:.4f}: the coupling is unstable in this grip",
                                a.eta_min_compliant)};
   }
   Passivity spring = by_condition3(a.condition3);
   if (spring.passive == false) return spring;
-  if (p.linked()) return {std::nullopt, "no bound is known for feedforward torques through a link"};
+  if (p.linked()) return {std::nullopt, "no limit is known for feedforward torques through a link"};
   if (a.delay > 0) {
     return {std::nullopt,
-            fmt::format("no bound is known for feedforward torques that act {:.3g} ms late",
+            fmt::format("no limit is known for feedforward torques that act {:.3g} ms late",
                         1e3 * a.delay)};
   }
-  return {true, "in free motion: eta is at or above eta_min, (25), and condition (3) holds"};
+  return {true,
+          "in free motion: eta is at least eta_min, equation (25), and condition (3) of the paper "
+          "is met"};
 }
 
 // A value of every joint: what is set, else the arm's own.
@@ -156,13 +159,14 @@ std::string basis_text(const ArmDescription& arm, const Parameters& p) {
   const std::string delay = fmt::format("a delay of {:.1f} ms", 1e3 * device_delay(arm, p));
   const bool set = !std::isnan(p.damping);
   if (arm.delay) {
-    return set ? fmt::format("inertia and {}, measured; damping as set", delay)
+    return set ? fmt::format("inertia and {}, measured; damping as in the settings", delay)
                : fmt::format("inertia, damping and {}, measured", delay);
   }
-  return fmt::format("{}, {}",
-                     set ? "inertia as in the arm's file, damping as set"
-                         : "inertia and damping as in the arm's file",
-                     p.delay + p.device_delay > 0 ? delay + " as set" : "no delay: assumed");
+  return fmt::format(
+      "{}, {}",
+      set ? "inertia as in the arm's file, damping as in the settings"
+          : "inertia and damping as in the arm's file",
+      p.delay + p.device_delay > 0 ? delay + " as in the settings" : "no delay (assumed)");
 }
 
 ArmAt arm_at(const ArmDescription& description, const Eigen::VectorXd& x) {
@@ -194,7 +198,7 @@ Passivity passivity(const Analysis& a, const Parameters& p) {
       if (p.tick > kTriedTick) {
         return {
             std::nullopt,
-            "no bound is known: the law's energy account was tested only at ticks of up to 1 ms"};
+            "no limit is known: the law's energy account was tested only at ticks of up to 1 ms"};
       }
       return {true, fmt::format("the energy account: the hand is given at most {:.3g} mJ",
                                 1e3 * p.energy)};
@@ -207,14 +211,16 @@ Passivity passivity(const Analysis& a, const Parameters& p) {
               "damping is right"};
     case Promise::line:
       if (a.line_margin >= 0) {
-        return {true, "the line's impedance is small compared with the device's damping"};
+        return {true, "the wave line's impedance is small compared with the device's damping"};
       }
-      return {std::nullopt,
-              "no bound is known: the line's impedance is above a third of the device's damping"};
+      return {
+          std::nullopt,
+          "no limit is known: the wave line's impedance is above a third of the device's damping"};
     case Promise::observer:
-      return {std::nullopt, "no bound is known: the law's damper may be too small or too late"};
+      return {std::nullopt,
+              "no limit is known: the law's damper may be too small or may act too late"};
     case Promise::none:
-      return {std::nullopt, "no bound is known: passivity depends on the hand's damping"};
+      return {std::nullopt, "no limit is known: passivity depends on the hand's damping"};
   }
   return {};
 }

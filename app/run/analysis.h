@@ -47,7 +47,7 @@ struct Analysis {
 
 // Whether the chosen law is passive: gives no more energy than it took, or than its account allows.
 struct Passivity {
-  std::optional<bool> passive;  // nothing: no bound is known
+  std::optional<bool> passive;  // nothing: no limit is known
   std::string by;               // reason in words: "condition (3)"
 };
 // Judges the chosen law; `a` is the analysis of `p`.

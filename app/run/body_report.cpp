@@ -95,7 +95,7 @@ double sinks_on(const BodyJoint& joint, const Object& object, const Vec3& center
 std::string line_of(const Object& object) {
   const Body& body = *object.body;
   std::string text = fmt::format("  {:<24} {:>9.4g} kg", object.name, body.mass);
-  if (!object.parts.empty()) text += fmt::format(", {} parts more", object.parts.size());
+  if (!object.parts.empty()) text += fmt::format(", {} more parts", object.parts.size());
   if (body.joint) {
     constexpr std::array kKinds{"slides", "turns", "hangs"};
     text += fmt::format(", {} on {}", kKinds[static_cast<std::size_t>(body.joint->kind)],
@@ -128,7 +128,7 @@ void warn(const Object& object, const Scene& scene, const ArmDescription& arm, B
   const double reach = farthest_tip(arm).distance;
   const double away = beyond_reach(object, scene, arm);
   if (away > 0) {
-    report.warnings.push_back(fmt::format("'{}' lies {:.3g} m beyond the tip's reach of {:.3g} m",
+    report.warnings.push_back(fmt::format("'{}' lies {:.3g} m outside the tip's reach of {:.3g} m",
                                           object.name, away, reach));
   }
   if (object.body->inertia) warn_of_inertia(object, *object.body->inertia, report);
@@ -207,11 +207,11 @@ std::vector<std::string> quick_mechanisms(const Scene& scene, double tick) {
     const double least = mass_properties(object).inertia.diagonal().minCoeff();
     const double turn = tick * std::sqrt(2 * energy / least);
     if (!(turn > BodyMotion::kMostTurn)) continue;
-    warnings.push_back(fmt::format(
-        "'{}': its springs, {:.3g} J at the start, may turn its {:.3g} kg m^2 by {:.3g} "
-        "rad in a tick of {:.3g} ms; bodies of mechanisms turn by {:.3g} rad at most, "
-        "and lose the rest",
-        object.name, energy, least, turn, 1e3 * tick, BodyMotion::kMostTurn));
+    warnings.push_back(
+        fmt::format("'{}': its springs store {:.3g} J at the start, and may turn its inertia of "
+                    "{:.3g} kg m^2 by {:.3g} rad in a tick of {:.3g} ms; a body of a mechanism "
+                    "turns by at most {:.3g} rad in a tick, and loses the rest of the turn",
+                    object.name, energy, least, turn, 1e3 * tick, BodyMotion::kMostTurn));
   }
   return warnings;
 }
@@ -272,8 +272,8 @@ BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm) {
   }
   if (energy > kHurts) {
     report.warnings.push_back(
-        fmt::format("falling objects may give {:.3g} J, more than {} J: a falling kilogram hurts; "
-                    "make the objects lighter, or let the objects start lower",
+        fmt::format("falling objects may give {:.3g} J, more than {} J: falling objects may hurt "
+                    "the hand; make the objects lighter, or let the objects start lower",
                     energy, kHurts));
   }
   if (springs > kHurts) {

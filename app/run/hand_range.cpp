@@ -57,15 +57,15 @@ class JudgedLaws {
     // The conditions of (25) are about free motion and the spring.
     if (info(p.kind).promise == Promise::eta_min) {
       return {std::nullopt, std::nullopt,
-              "passive in free motion; no bound is known for contact forces, which are fed forward "
-              "late"};
+              "passive in free motion; no limit is known for contact forces, because they are fed "
+              "forward with a delay"};
     }
     return {kEvery, std::nullopt, known.by};
   }
   SafeWalls on_device(const InHands& all) const {
     if (p_.encoder_step > 0 && !all.stepped.wall) {
       return {std::nullopt, std::nullopt,
-              "no bound is known for encoder steps together with a delay"};
+              "no limit is known for encoder steps together with a delay"};
     }
     const double stepped = all.stepped.wall.value_or(kEvery), sampled = *all.sampled.wall;
     return {std::min(sampled, stepped), std::nullopt,
@@ -75,12 +75,12 @@ class JudgedLaws {
   SafeWalls in_range(CouplingKind kind) const {
     const LinearLoop loop = info(kind).loop;
     const auto unknown = [](const char* why) { return SafeWalls{std::nullopt, std::nullopt, why}; };
-    if (loop == LinearLoop::none) return unknown("no bound is known: the law is not linear");
+    if (loop == LinearLoop::none) return unknown("no limit is known: the law is not linear");
     if (loop != LinearLoop::on_device && p_.linked()) {
-      return unknown("no bound is computed for a link between device and proxy");
+      return unknown("no limit is computed for a law with a link between device and proxy");
     }
     if (loop == LinearLoop::fed_forward && p_.velocity != VelocitySource::raw) {
-      return unknown("a bound is computed only with raw velocities");
+      return unknown("a stability limit is computed only with unfiltered velocities");
     }
     SafeWalls found{kEvery, std::nullopt,
                     "the sampled loop of arm, hand and wall, with exact encoders"};
@@ -119,7 +119,7 @@ class JudgedLaws {
         }
         return {};
       case LinearLoop::fed_forward:
-        return "not known: the law feeds forces forward; condition (25) applies to the law";
+        return "not known: the law feeds forces forward; equation (25) applies to this law";
       case LinearLoop::none: break;
     }
     return "not known: the law is not linear";
@@ -151,17 +151,17 @@ class JudgedLaws {
 
 NamedBound colgate_schenkel(const TipLimits& tip) {
   return {"Colgate and Schenkel", "Colgate and Schenkel 1997, J. Robotic Systems 14, 37",
-          "K <= b_d/(T/2 + delay), b_d of the arm at the tip", tip.every_hand};
+          "K <= b_d/(T/2 + delay); b_d is the arm's damping at the tip", tip.every_hand};
 }
 
 NamedBound abbott_okamura(const ArmDescription& arm, const ArmAt& at, const Parameters& p,
                           const TipLimits& tip) {
-  NamedBound bound{"Abbott and Okamura", "Abbott and Okamura 2005, IEEE Trans. Robotics 21, 952",
-                   "K <= min(2 b_d/T, 2 f_c/q), f_c the friction and q the encoders' step at the "
-                   "tip",
-                   std::nullopt};
+  NamedBound bound{
+      "Abbott and Okamura", "Abbott and Okamura 2005, IEEE Trans. Robotics 21, 952",
+      "K <= min(2 b_d/T, 2 f_c/q); f_c is the friction and q the encoder step at the tip",
+      std::nullopt};
   if (tip.loop.delay > 0) {
-    bound.rule += "; this bound is known only without a delay";
+    bound.rule += "; this bound is known only if there is no delay";
     return bound;
   }
   const double friction = (1 - p.friction_share) * friction_at_tip(at.J, device_friction(arm, p));

@@ -19,7 +19,7 @@ struct HandRange {
 
 // Walls that are stable, or passive.
 struct SafeWalls {
-  std::optional<double> up_to;  // [N/m]; infinite: every wall; none: no bound is known
+  std::optional<double> up_to;  // [N/m]; infinite: every wall; none: no limit is known
   std::optional<double> hand;   // stiffness of the hand that sets the bound [N/m]
   std::string why;
 };

@@ -28,8 +28,8 @@ ModelAxes axes_of(const Model& model, const std::filesystem::path& file) {
 
 std::string text_of(const ModelAxes& axes) {
   const ModelUnit* const unit = model_unit(axes.unit);
-  return fmt::format("in {}, {} up{}", unit ? unit->name : "units of its own",
-                     axes.y_up ? "y" : "z", axes.guessed ? " (guessed)" : "");
+  return fmt::format("in {}, {} up{}", unit ? unit->name : "its own unit", axes.y_up ? "y" : "z",
+                     axes.guessed ? " (guessed)" : "");
 }
 
 namespace {

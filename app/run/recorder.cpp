@@ -28,7 +28,8 @@ const std::filesystem::path& of_as_many_lanes(const std::filesystem::path& out,
                                               const SessionInfo& info, std::size_t lanes) {
   if (info.lanes() == lanes && lanes <= kMostLanes) return out;
   throw std::invalid_argument(
-      fmt::format("{}: {} runs, but settings of {} runs", out.string(), info.lanes(), lanes));
+      fmt::format("{}: the file has {} runs, but there are settings of {} runs", out.string(),
+                  info.lanes(), lanes));
 }
 
 std::size_t row_size(const SessionInfo& info) {
@@ -203,7 +204,7 @@ std::string lock_note(const Recorder& recorder) {
 
 std::string why_it_ended(const Recorder& recorder) {
   return fmt::format(
-      "the recording has ended by itself: {}; `limpid recover {}` saves what is there",
+      "the recording has ended by itself: {}; `limpid recover {}` saves the recorded part",
       recorder.error(), part_of(recorder.out()).string());
 }
 

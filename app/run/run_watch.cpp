@@ -119,7 +119,7 @@ std::vector<std::string> RunWatch::cautions() const {
                                     joules_text(promised_))
                       : "";
     all.push_back(fmt::format(
-        "E_c rose to {}{}, above the bound since t = {:.3f} s: this run is not passive ({})",
+        "E_c rose to {}{}, above the limit since t = {:.3f} s: this run is not passive ({})",
         joules_text(energy_.most), allowed, energy_.since, energy_.with));
   }
   if (speed_.since >= 0) {

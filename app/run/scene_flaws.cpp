@@ -38,8 +38,8 @@ void warn_of_friction(const Object& object, std::vector<std::string>& warnings) 
   const Material& m = object.material;
   if (m.friction_kinetic <= m.friction_static) return;
   warnings.push_back(
-      fmt::format("'{}': friction_kinetic {:.4g} is above friction_static {:.4g}: a sliding tip "
-                  "would be held more than a sticking tip",
+      fmt::format("'{}': friction_kinetic {:.4g} is above friction_static {:.4g}: friction would "
+                  "be larger while the tip slides than while the tip sticks",
                   object.name, m.friction_kinetic, m.friction_static));
 }
 
@@ -48,7 +48,7 @@ void warn_of_place(const Object& object, const Scene& scene, const ArmDescriptio
   const double reach = farthest_tip(arm).distance;
   const double away = beyond_reach(object, scene, arm);
   if (away > 0) {
-    warnings.push_back(fmt::format("'{}' lies {:.3g} m beyond the tip's reach of {:.3g} m",
+    warnings.push_back(fmt::format("'{}' lies {:.3g} m outside the tip's reach of {:.3g} m",
                                    object.name, away, reach));
   }
   const double depth = depth_of(tip, object, scene);

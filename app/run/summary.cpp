@@ -56,15 +56,15 @@ std::string in_words(const Excess& e) {
   };
   const auto words = [&]() -> Words {
     switch (e.column) {
-      case Column::commanded_torque: return {"the torque asked of joint", kWildTorque, "N m"};
+      case Column::commanded_torque: return {"the torque commanded to joint", kWildTorque, "N m"};
       case Column::proxy_velocity: return {"the speed of the proxy's joint", kWildSpeed, "rad/s"};
       case Column::proxy_position:
-        return {"the distance of device and proxy in joint", kWildError, "rad"};
+        return {"the distance between device and proxy in joint", kWildError, "rad"};
       default: return {"the speed of the device's joint", kWildSpeed, "rad/s"};
     }
   }();
   if (!std::isfinite(e.times)) return fmt::format("{} {} is not finite", words.what, e.joint + 1);
-  return fmt::format("{} {} grew beyond {:.0f} {}", words.what, e.joint + 1, words.limit,
+  return fmt::format("{} {} became larger than {:.0f} {}", words.what, e.joint + 1, words.limit,
                      words.unit);
 }
 
@@ -173,7 +173,7 @@ std::string Summary::text() const {
   const Totals& t = totals();
   std::string text = fmt::format("ticks                    {}\n", all_.rows);
   if (watch_.lost()) {
-    text += fmt::format("unstable                 since t = {:.3f} s: {}\nbefore that\n",
+    text += fmt::format("unstable                 since t = {:.3f} s: {}\nbefore this time\n",
                         watch_.since(), watch_.why());
   }
   text += fmt::format(
@@ -194,29 +194,30 @@ std::string Summary::text() const {
   held("torque held back in", t.torque_held);
   if (t.warmest > 0) {
     text += fmt::format(
-        "warmth of the motors     at most {:.0f} % of the limit for hours of use ({}); less than "
-        "the full torque for {:.3f} s\n",
+        "warmth of the motors     at most {:.0f} % of the limit for hours of use ({}); the full "
+        "torque was not available for {:.3f} s\n",
         100 * t.warmest, warming_[t.warmest_joint], t.held_by_warmth);
   }
   if (layout_.bodies() == 0) return text;
   text += fmt::format(
       "to objects               {:.3f} mJ\n"
       "objects gained           {:.6f} mJ at most\n"
-      "objects that moved       {:.0f} of {} at once\n",
+      "objects that moved       {:.0f} of {} at the same time\n",
       1e3 * t.to_objects, 1e3 * t.objects_gain, t.most_awake, layout_.bodies());
   if (t.left_out > 0) {
     text +=
-        fmt::format("contact points left out  up to {:.0f} in a tick; these points give no force\n",
+        fmt::format("contact points ignored   up to {:.0f} in a tick; these points give no force\n",
                     t.left_out);
   }
   if (t.stood_still > 0) {
-    text +=
-        fmt::format("objects stood still      {:.0f} ticks: the solver found no forces for them\n",
-                    t.stood_still);
+    text += fmt::format(
+        "objects stood still      {:.0f} ticks: the solver found no forces for the objects\n",
+        t.stood_still);
   }
   if (t.turned_less > 0) {
     text += fmt::format(
-        "objects turned less      {:.0f} ticks: a body of a mechanism turns by a radian at most\n",
+        "objects turned less      {:.0f} ticks: a body of a mechanism turns by at most one radian "
+        "per tick\n",
         t.turned_less);
   }
   return text;

@@ -49,7 +49,7 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
             2 * p.oldest() * p.tick};
   l.w_f = p.alpha / lever2 / l.felt.m;
   l.delay_most = most_delay(p, description.delay, description.delay.has_value());
-  l.added = added_mass(p.eta, l.delay_most, p.tick);
+  l.added = added_mass(p.eta, l.delay_most, p.tick, p.inertia_ratio);
 
   for (std::size_t i = 0; i < kLaws; ++i) {
     l.walls[i] = wall_at_tip(static_cast<CouplingKind>(i), p, l);
@@ -68,11 +68,16 @@ TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, con
   return tip_limits(prompt, x, q, scene);
 }
 
-std::string late_text(const TipLimits& l, const Parameters& p) {
-  if (p.eta <= 1 || l.added.edge >= added_mass(p.eta, 0, p.tick).edge) return {};
-  return fmt::format("{:.3g} up to {:.2g} Hz, because the torque may be {:.3g} ms late",
-                     l.added.eta, l.added.edge / (2 * std::numbers::pi),
-                     1e3 * p.tick * l.delay_most);
+std::string less_added_text(const TipLimits& l, const Parameters& p) {
+  const bool late = l.added.edge < added_mass(p.eta, 0, p.tick, p.inertia_ratio).edge;
+  const bool heavy = p.eta > 1 + 1 / p.inertia_ratio;
+  if (p.eta <= 1 || (!late && !heavy)) return {};
+  std::string why;
+  if (late) why = fmt::format("the torque may be {:.3g} ms late", 1e3 * p.tick * l.delay_most);
+  if (late && heavy) why += ", and ";
+  if (heavy) why += fmt::format("the proxy has {:.2g} times the device's inertia", p.inertia_ratio);
+  return fmt::format("{:.3g} up to {:.2g} Hz, because {}", l.added.eta,
+                     l.added.edge / (2 * std::numbers::pi), why);
 }
 
 }  // namespace limpid

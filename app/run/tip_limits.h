@@ -34,8 +34,8 @@ TipLimits tip_limits(const ArmDescription& arm, const Eigen::VectorXd& x, const 
 TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                         const Scene& scene);
 
-// Says what the possible delay leaves of an eta above 1 under the predictive coupling: "5 up to 3.3
-// Hz, because the torque may be 3 ms late"; empty if it leaves all of it.
-std::string late_text(const TipLimits& limits, const Parameters& p);
+// Says what possible delay and proxy leave of an eta above 1 under the predictive coupling: "5 up
+// to 3.3 Hz, because the torque may be 3 ms late"; empty if they leave all of it.
+std::string less_added_text(const TipLimits& limits, const Parameters& p);
 
 }  // namespace limpid

@@ -38,7 +38,7 @@ std::vector<std::pair<std::string, std::uint32_t>> settings_in(const TomlTable& 
   std::vector<std::pair<std::string, std::uint32_t>> all;
   const toml::node* node = step.find(key);
   if (node == nullptr) return all;
-  const char* allowed = "a list of settings, as [\"coupling.eta = 0.6\", ...]";
+  const char* allowed = "a list of settings, for example [\"coupling.eta = 0.6\", ...]";
   const toml::array* list = node->as_array();
   if (list == nullptr) step.refuse(key, allowed);
   for (const toml::node& each : *list) {
@@ -56,7 +56,7 @@ void check(const std::string& setting, std::size_t lane, double time) {
         fmt::format("{}: is one setting for all runs; write this setting under set", info->key));
   }
   if (!info->live && time > 0) {
-    throw ParameterError(fmt::format("{}: may be set in the first step only", info->key));
+    throw ParameterError(fmt::format("{}: may be set only in the first step", info->key));
   }
 }
 
@@ -89,8 +89,8 @@ std::filesystem::path file_named(const TomlTable& table, const char* key,
                                  const std::string& name) {
   std::filesystem::path found = beside_or_own(folder, kind, name);
   if (!std::filesystem::exists(found)) {
-    table.refuse(key,
-                 "a file beside the script, or one of " + (data_dir() / "assets" / kind).string());
+    table.refuse(key, "a file in the folder of the script, or one of " +
+                          (data_dir() / "assets" / kind).string());
   }
   return found;
 }
@@ -106,7 +106,7 @@ std::vector<std::string> names_in(const TomlTable& step, const StorySettings& se
   const auto said = names_said(step);
   const std::size_t runs = settings.now().size();
   if (said && said->size() != runs) {
-    step.refuse("names", fmt::format("{} words, one for each run", runs));
+    step.refuse("names", fmt::format("{} names, one for each run", runs));
   }
   return said ? *said : lane_names(settings.now());
 }
@@ -177,7 +177,7 @@ class Reader {
     step.allow_only({"time", "caption", "mark", "names", "hand", "set", "first", "twin", "lane3",
                      "beside", "anew", "camera"});
     if (!(ends >= begins + kShortestStep)) {
-      step.refuse("time", fmt::format("at least {} s before what comes next, which is at {} s",
+      step.refuse("time", fmt::format("at least {} s before the next event, which is at {} s",
                                       kShortestStep, ends));
     }
     settings_.read(step, where_, begins);
@@ -224,7 +224,7 @@ std::optional<std::vector<std::string>> names_said(const TomlTable& step) {
   const toml::array* list = node->as_array();
   const bool good = list != nullptr && list->size() >= 2 && list->size() <= kMostLanes &&
                     list->is_homogeneous(toml::node_type::string);
-  if (!good) step.refuse("names", "a word for each run, as [\"left\", \"right\"]");
+  if (!good) step.refuse("names", "a word for each run, for example [\"left\", \"right\"]");
   std::vector<std::string> names;
   for (const toml::node& name : *list) names.push_back(*name.value<std::string>());
   return names;
@@ -247,7 +247,9 @@ void StorySettings::read(const TomlTable& step, const std::string& where, double
   for (const auto& [key, lane] :
        {std::pair{"set", kAll}, {"first", kMainLane}, {"twin", kTwinLane}, {"lane3", kThird}}) {
     if (lane == kThird && now_.size() <= kThird && step.find(key) != nullptr) {
-      step.refuse(key, "in the first step as well, which begins the third run");
+      step.refuse(key,
+                  "this key in a later step only if the first step has this key as well and so "
+                  "begins the third run");
     }
     for (const auto& [setting, line] : settings_in(step, key)) {
       try {

@@ -10,7 +10,7 @@ bool counts(ImGuiID id, bool changed, bool allowed, const std::string& range) {
   if (changed && allowed) reminder.fall_silent();
   if (changed && !allowed) reminder.speak();
   if (reminder.speaks()) {
-    ImGui::TextColored(colour_vector(current_palette().broken), "not taken; allowed: %s",
+    ImGui::TextColored(colour_vector(current_palette().broken), "not accepted; allowed: %s",
                        range.c_str());
   }
   return changed && allowed;

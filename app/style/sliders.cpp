@@ -170,7 +170,7 @@ void show_tooltip(const FieldInfo& info, double usual, const char* broken) {
     ImGui::Text("%s: %s (right click sets it). Double click to type.",
                 of_paper(info) ? "Paper" : "Usual", with_unit(info, usual).c_str());
   } else {
-    ImGui::Text("%s. Right click sets the usual choice.", info.key);
+    ImGui::Text("%s. Right click sets the default value.", info.key);
   }
   if (!info.live) ImGui::TextUnformatted("Takes effect when the loop starts again.");
   ImGui::PopStyleColor();
@@ -308,7 +308,7 @@ bool number_slider(const FieldInfo& info, double& value, const SliderMarks& mark
   const Palette& p = current_palette();
   if (RangeReminder(id).speaks()) {
     ImGui::GetWindowDrawList()->AddText(box.Min, colour(p.broken),
-                                        ("not taken; allowed: " + range_text(info)).c_str());
+                                        ("not accepted; allowed: " + range_text(info)).c_str());
   } else {
     draw_caption(box, info, with_unit(info, value),
                  broken              ? p.broken

@@ -93,7 +93,7 @@ std::string why_not(const BodyAxis& axis, const Scene& scene) {
       scene.objects, [&](const Object& object) { return object.body && object.name == axis.body; });
   if (found == scene.objects.end()) {
     return fmt::format("no body is called '{}'; allowed: {}", axis.body,
-                       names.empty() ? "none, nothing moves in this scene"
+                       names.empty() ? "none, because nothing moves in this scene"
                                      : fmt::format("{}", fmt::join(names, ", ")));
   }
   if (axis.property->has(*found)) return "";

@@ -103,8 +103,8 @@ std::vector<SweepColumn> measured_columns(const SweepPlan& plan) {
       {"boundary_last", axis.unit,
        fmt::format("highest {} at which the result changes", axis.name)},
       {"at_top", "yes/no",
-       fmt::format("whether {} is met at the highest {}", condition, axis.name)},
-      {"changes", "-", "number of changes between the values tried"},
+       fmt::format("whether the condition {} is met at the highest {}", condition, axis.name)},
+      {"changes", "-", "number of changes of the result between the values tried"},
       {"runs", "-", "number of runs made"}};
 }
 

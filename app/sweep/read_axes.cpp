@@ -91,7 +91,7 @@ std::vector<const char*> words_of(const FieldInfo& info) {
 }
 
 void read_words(const TomlTable& table, SweepAxis& axis) {
-  const std::string allowed = fmt::format("a list of words among {}", fmt::join(axis.words, ", "));
+  const std::string allowed = fmt::format("a list of words from: {}", fmt::join(axis.words, ", "));
   const toml::node* node = table.find("values");
   if (node == nullptr) table.refuse_missing("values");
   if (!node->is_array()) table.refuse("values", allowed);
@@ -136,11 +136,10 @@ void refuse_key(const TomlTable& table, const std::string& key) {
   for (const FieldInfo& own : kOwnKeys) keys.emplace_back(own.key);
   for (const ParameterInfo& info : parameter_table()) keys.emplace_back(info.key);
   const auto meant = nearest(key, keys);
-  table.refuse(
-      "key",
-      "device, scene, hand, scene.stiffness, scene.body.NAME.PROPERTY, arm.joints, arm.mass, "
-      "arm.seed, or a parameter of limpid run --help" +
-          (meant ? "; did you mean " + *meant + "?" : std::string()));
+  table.refuse("key",
+               "device, scene, hand, scene.stiffness, scene.body.NAME.PROPERTY, arm.joints, "
+               "arm.mass, arm.seed, or a parameter that limpid run --help lists" +
+                   (meant ? "; did you mean " + *meant + "?" : std::string()));
 }
 
 void read_numbers(const TomlTable& table, ReadAxis& read) {
@@ -177,7 +176,7 @@ void refuse_doubles(const TomlTable& table, const SweepAxis& axis) {
     return std::ranges::adjacent_find(all) != all.end();
   };
   const auto refuse = [&](const char* key) {
-    table.refuse(key, "each one once; `repeats` runs all points several times");
+    table.refuse(key, "each value only once; `repeats` runs all points several times");
   };
   if (table.find("cases") != nullptr) {
     if (twice(axis.words)) refuse("cases");
@@ -315,7 +314,7 @@ SweepLimit read_limit(const TomlTable& table) {
   const std::string name = table.need(table.text("measure"), "measure");
   SweepLimit limit{find_measure(name), table.number("above", kAnything),
                    table.number("below", kAnything)};
-  if (limit.measure == nullptr) table.refuse("measure", "a measure of limpid sweep --help");
+  if (limit.measure == nullptr) table.refuse("measure", "a measure that limpid sweep --help lists");
   if (!limit.measure->yes_no() && !limit.above && !limit.below) {
     table.refuse("measure",
                  "a measure that is yes or no; or another measure, with a key above or below");

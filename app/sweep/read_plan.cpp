@@ -70,11 +70,11 @@ class Reader {
   void refuse_refine() const {
     const toml::node* refine = file_.find("refine");
     if (refine == nullptr) return;
-    throw FileError(fmt::format(
-        "{}:{}: refine: limpid no longer refines maps; take [refine] out and give the axes a "
-        "larger count, sweep the place of interest with a plan of its own, or look for an edge "
-        "with [boundary]",
-        where_, refine->source().begin.line));
+    throw FileError(
+        fmt::format("{}:{}: refine: limpid no longer refines maps; remove [refine]. Instead give "
+                    "the axes a larger count, sweep the part of interest with its own plan, or "
+                    "search for an edge with [boundary]",
+                    where_, refine->source().begin.line));
   }
 
   // An inner table; nothing if there is none.
@@ -109,17 +109,19 @@ class Reader {
                   hand->vector("jump", kMetres).value_or(Vec3::Zero())};
     if (plan_.seconds == 0) file_.refuse_missing("seconds");
     if (plan_.repeats > 1)
-      file_.refuse("repeats", "1 for a hand that jumps: all repeats would be alike");
+      file_.refuse("repeats", "1, because a hand that jumps makes all repeats equal");
   }
 
   // Refuses other keys beside a tap, which makes its own wall and path.
   void read_tap(const TomlTable& hand) const {
     for (const char* key : {"at", "jump"}) {
-      if (hand.find(key) != nullptr) hand.refuse(key, "nothing: a hand that taps finds its way");
+      if (hand.find(key) != nullptr)
+        hand.refuse(key, "none, because a hand that taps finds its own way");
     }
-    if (file_.find("scene") != nullptr) file_.refuse("scene", "nothing: a tap has its own wall");
+    if (file_.find("scene") != nullptr)
+      file_.refuse("scene", "none, because a tap test has its own wall");
     if (plan_.repeats > 1)
-      file_.refuse("repeats", "1 for a hand that taps: all repeats would be alike");
+      file_.refuse("repeats", "1, because a hand that taps makes all repeats equal");
   }
 
   void read_axes() {
@@ -133,7 +135,7 @@ class Reader {
         each.refuse("key", "arm.joints, arm.mass, arm.seed only with hand = { tap = NEWTONS }");
       }
       if (axes.back().axis.key.starts_with(kBodyKey) && plan_.tap) {
-        each.refuse("key", "no body's: a tap has its own wall");
+        each.refuse("key", "no key of a body, because a tap test has its own wall");
       }
       if (!names.insert(axes.back().axis.name).second) {
         each.refuse(each.find("name") ? "name" : "key", "a name that no other axis has");
@@ -141,7 +143,8 @@ class Reader {
       claim(each, axes.back().axis);
     }
     if (sampled && plan_.samples < 2) file_.refuse_missing("samples");
-    if (!sampled && plan_.samples > 1) file_.refuse("samples", "nothing: no axis is sampled");
+    if (!sampled && plan_.samples > 1)
+      file_.refuse("samples", "no value, because no axis is sampled");
     read_boundary();
     // Checked before drawing more points than memory holds.
     double points = static_cast<double>(plan_.samples * plan_.repeats);
@@ -160,19 +163,21 @@ class Reader {
   void claim(const TomlTable& table, const SweepAxis& axis) {
     const char* const where = table.find("cases") != nullptr ? "cases" : "key";
     for (const std::string& key : decided_by(axis)) {
-      if (key == "scene" && plan_.tap) table.refuse(where, "no scene: a tap has its own wall");
+      if (key == "scene" && plan_.tap)
+        table.refuse(where, "no scene, because a tap test has its own wall");
       if (key == "hand" && (plan_.tap || plan_.jump)) {
-        table.refuse(where, "no hand: the plan's own `hand` is no file");
+        table.refuse(where, "no hand, because the plan's own `hand` is not a file");
       }
       const bool random = key.starts_with("arm.");
       const bool of_arms = random || key == "device";
       if (of_arms && decided_.contains(random ? "device" : "arm.")) {
-        table.refuse(where, "device or arm.joints, arm.mass, arm.seed: a random arm is no device");
+        table.refuse(where,
+                     "either device, or arm.joints, arm.mass and arm.seed, because a random arm is "
+                     "not a device");
       }
       if (random) decided_.insert("arm.");
       if (decided_.insert(key).second) continue;
-      table.refuse(where,
-                   fmt::format("a key that no other axis decides; {} is decided already", key));
+      table.refuse(where, fmt::format("a key that no other axis sets; {} is set already", key));
     }
   }
 
@@ -200,14 +205,16 @@ class Reader {
         std::vector<std::string> names;
         for (const MeasureInfo& each : measure_table()) names.emplace_back(each.name);
         const auto meant = nearest(name, names);
-        file_.refuse("measure", fmt::format("{}: no such measure; {}a list among {}", name,
-                                            meant ? fmt::format("did you mean {}? ", *meant) : "",
-                                            fmt::join(names, ", ")));
+        file_.refuse("measure",
+                     fmt::format("{}: there is no such measure; {}a list of measures from: {}",
+                                 name, meant ? fmt::format("did you mean {}? ", *meant) : "",
+                                 fmt::join(names, ", ")));
       }
       plan_.measures.push_back(measure);
     }
     if (plan_.boundary && !plan_.measures.empty()) {
-      file_.refuse("measure", "nothing: a sweep with a boundary measures the boundary only");
+      file_.refuse("measure",
+                   "no value, because a sweep with a boundary measures only the boundary");
     }
     if (!plan_.boundary && plan_.measures.empty()) file_.refuse_missing("measure");
     for (const TomlTable& each : file_.tables("stop")) {
@@ -235,7 +242,8 @@ class Reader {
     }
     for (const std::string& line : plan_.figure.theory) {
       if (std::ranges::find(kTheories, line) == std::end(kTheories)) {
-        figure->refuse("theory", fmt::format("a list among {}", fmt::join(kTheories, ", ")));
+        figure->refuse("theory",
+                       fmt::format("a list of names from: {}", fmt::join(kTheories, ", ")));
       }
     }
   }
@@ -265,7 +273,7 @@ RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
     if (name.empty()) return otherwise;
     fs::path found = beside_or_own(plan.file.parent_path(), kind, name);
     if (fs::exists(found)) return found;
-    throw FileError(fmt::format("{}: \"{}\" is not there, neither beside the plan nor in {}{}",
+    throw FileError(fmt::format("{}: file \"{}\" not found, neither beside the plan nor in {}{}",
                                 plan.file.string(), name, (data_dir() / "assets" / kind).string(),
                                 shipped_hint(name, {kind})));
   };

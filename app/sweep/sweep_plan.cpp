@@ -71,9 +71,9 @@ PosedArm random_one(const Chosen& chosen) {
   const int joints = static_cast<int>(chosen.joints.value_or(3));
   const auto seed = static_cast<unsigned>(chosen.seed.value_or(0));
   const double mass = chosen.mass.value_or(kDesktopLink * joints);
-  const std::string text = urdf_text(
-      weighing(random_arm(joints, seed), mass),
-      fmt::format("an arm that nobody chose: {} joints, {} kg, the {}th", joints, mass, seed));
+  const std::string text =
+      urdf_text(weighing(random_arm(joints, seed), mass),
+                fmt::format("random arm: {} joints, {} kg, seed {}", joints, mass, seed));
   return {parse_urdf(text, "random arm", {}), Random(seed + 1000).vector(joints, 0.6)};
 }
 

@@ -109,14 +109,15 @@ class TableFile {
       throw FileError(fmt::format("{}: damaged: {}: missing", path_.string(), name));
     }
     if (found->second.size() != rows) {
-      throw FileError(fmt::format("{}: damaged: {}: {} values; needed: {}, as it says",
-                                  path_.string(), name, found->second.size(), rows));
+      throw FileError(
+          fmt::format("{}: damaged: {}: {} values; needed: {}, the number that the file gives",
+                      path_.string(), name, found->second.size(), rows));
     }
     return found->second;
   }
 
   [[noreturn]] void refuse_rows(std::uint64_t found, std::uint64_t needed) const {
-    throw FileError(fmt::format("{}: damaged: {} points; needed: {}, as its plan has",
+    throw FileError(fmt::format("{}: damaged: it has {} points; its sweep plan has {}",
                                 path_.string(), found, needed));
   }
 
@@ -131,8 +132,8 @@ std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& 
   const std::string text = file.text_if_any("plan");
   if (text.empty()) {
     throw FileError(
-        fmt::format("{}: the table holds no plan, so that nobody knows what the table's points "
-                    "are; needed: a table with a plan",
+        fmt::format("{}: the table contains no plan, so the meaning of its points is not known; "
+                    "needed: a table with a plan",
                     path.string()));
   }
   if (("\n" + text).find("\n[refine]") != std::string::npos) {
@@ -146,14 +147,14 @@ std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& 
     read_worlds(*plan);
   } catch (const std::exception& e) {
     plan->worlds.clear();
-    why_no_run = fmt::format("files that the plan names are not there: {}", e.what());
+    why_no_run = fmt::format("files that the plan names were not found: {}", e.what());
     return plan;
   }
   const std::string key = file.text_if_any("key");
   if (!key.empty() && key != hex(plan->key)) {
     why_no_run = fmt::format(
-        "files that the plan names have changed since: they are looked for beside {} and among "
-        "the program's own",
+        "files that the plan names have changed since the sweep. Limpid searches for them beside "
+        "{} and among its own files",
         plan->file.string());
   }
   return plan;

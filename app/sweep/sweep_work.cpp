@@ -29,10 +29,11 @@ struct Belongs {
 void check_same(const Belongs& found, const Belongs& own, const fs::path& file) {
   const auto refuse = [&](const char* what, std::uint64_t theirs, std::uint64_t mine) {
     throw FileError(fmt::format(
-        "{}: made from another {} ({}); needed: {}. Take another --out, or remove that folder",
+        "{}: made from another {} ({}); needed: {}. Use another --out, or remove that folder",
         file.string(), what, hex(theirs), hex(mine)));
   };
-  if (found.plan != own.plan) refuse("plan, or a file that the plan names", found.plan, own.plan);
+  if (found.plan != own.plan)
+    refuse("plan, or from another version of a file that the plan names", found.plan, own.plan);
   if (found.build != own.build) {
     refuse("build of limpid, or on another kind of processor", found.build, own.build);
   }

@@ -77,7 +77,7 @@ ROWS = (
      lambda a: a.torques("torque_estimate")),
     ("Fig. 5: true human torque, likewise", "not measured", lambda a: a.torques("torque")),
     ("Fig. 6: highest E_c of ten trials, standard", "passive",
-     lambda a: energy(a.check("passivity", "commanded, of all trials, standard"))),
+     lambda a: energy(a.check("passivity", "commanded E_c of all trials, standard"))),
     *((f"Fig. 6: the same, proposed, η {eta}", words, lambda a, eta=eta: energy(a.given[eta]))
       for eta, words in zip(ETAS, ("passive", "not passive", "not passive", "not passive"))),
     ("Fig. 7: share of the motion's power below 5 Hz", "most",

@@ -78,13 +78,14 @@ Mapped map_file(std::size_t bytes) {
   if (*file < 0) return failed();
   if (!keeps_its_room(*file))
     return {nullptr,
-            in + ": the file system lies in main memory, or cannot reserve room for a file"};
+            in + ": the file system is in main memory, or cannot reserve space for a file"};
   struct statvfs disk {};
   if (::fstatvfs(*file, &disk) != 0) return failed();
   const std::uint64_t free = std::uint64_t{disk.f_bavail} * disk.f_frsize;
   if (free < bytes + kLeftOnDisk) {
-    return {nullptr, fmt::format("{}: {} MiB of the disk are free, and Limpid leaves {} MiB free",
-                                 in, free >> 20, kLeftOnDisk >> 20)};
+    return {nullptr,
+            fmt::format("{}: {} MiB of the disk are free, and Limpid must leave {} MiB free", in,
+                        free >> 20, kLeftOnDisk >> 20)};
   }
   if (::fallocate(*file, 0, 0, static_cast<off_t>(bytes)) != 0) return failed();
   void* block = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, *file, 0);
@@ -130,8 +131,8 @@ void* take_large_block(std::size_t bytes) {
     if (void* block = map_plain(bytes)) return block;
   }
   throw NoRoom(
-      fmt::format("{} MiB more main memory (RAM) are needed, this computer has {} MiB in all, and "
-                  "{}; set TMPDIR to another folder",
+      fmt::format("{} MiB more main memory (RAM) are needed. This computer has {} MiB in total. A "
+                  "file on the disk cannot be used instead: {}. Set TMPDIR to another folder",
                   bytes >> 20, memory >> 20, file.why));
 }
 

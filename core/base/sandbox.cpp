@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 constexpr int kFirstToClose = 4;  // stdin, stdout, stderr and one more stay
 
 [[noreturn]] void refuse() {
-  throw std::runtime_error("cannot be read: the kernel refuses the reader's sandbox");
+  throw std::runtime_error(
+      "cannot be read: the kernel does not allow the sandbox that the reading program needs");
 }
 
 // Restricts files by Landlock. Has no effect where the kernel has none; the filter of calls still

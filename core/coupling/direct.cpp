@@ -25,7 +25,7 @@ class Direct final : public Law<N> {
 
 TipWall DirectLaw::wall(const LawSettings&, const LawAtTip& at) {
   return at.on_device(direct_wall(at.tip, at.loop),
-                      "the damping of arm and hand: (b_d + b_h)/(T/2 + delay)");
+                      "the damping of arm and hand limits the wall: (b_d + b_h)/(T/2 + delay)");
 }
 
 FeltAtTip DirectLaw::felt(const LawSettings&, const LawAtTip& at, double) { return at.arm_alone(); }

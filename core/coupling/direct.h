@@ -24,7 +24,8 @@ struct DirectLaw {
       .key = "direct",
       .label = "Direct",
       .meaning = "without a proxy: the walls' springs act on the device itself.",
-      .verdict = "What most programs do. Stiff walls need a hand that damps.",
+      .verdict =
+          "Most programs use this law. Stiff walls are stable only if the hand damps enough.",
       .promise = Promise::none,
       .loop = LinearLoop::on_device,
       .on_device = true,

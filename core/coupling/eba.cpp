@@ -83,7 +83,7 @@ class Eba final : public Law<N> {
 }  // namespace
 
 TipWall EbaLaw::wall(const LawSettings&, const LawAtTip& at) {
-  return {bounded_wall(at.tip, at.loop), "the arm's damping: 2 b_d/(T + delay)"};
+  return {bounded_wall(at.tip, at.loop), "the arm's damping limits the wall: 2 b_d/(T + delay)"};
 }
 
 FeltAtTip EbaLaw::felt(const LawSettings&, const LawAtTip& at, double) { return at.arm_alone(); }

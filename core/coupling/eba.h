@@ -33,8 +33,9 @@ struct EbaLaw {
       .for_comparison = true,
       .through_link = "the law renders walls on the device itself and has no link",
       .torque_share =
-          "Share of the walls' torque that the account can pay for in the coming tick. A wall "
-          "that was pressed when the law took over returns as the hand presses on.",
+          "Share of the walls' torque that the energy account allows in the coming tick. If the "
+          "hand presses a wall when this law is switched on, the wall's force comes back while the "
+          "hand presses further.",
       .sliders = kSliders,
   };
 
@@ -44,11 +45,12 @@ struct EbaLaw {
 
     template <class P>
     static constexpr std::array<Field<P>, 1> settings() {
-      return {{{"eba.damping", "b bounded by", "Damping believed", &P::eba_damping, "N m s/rad", 0,
+      return {{{"eba.damping", "b bounded by", "Assumed damping", &P::eba_damping, "N m s/rad", 0,
                 10, 0, 0.1, false, true,
-                "Energy bounding: damping of every joint that pays for the walls' torque. Default: "
-                "the device's own, as identified or as its file says. A value above the true one "
-                "gives energy away; of a real device Limpid believes no more than is known."}}};
+                "Energy bounding: damping of every joint from which the law computes how much "
+                "torque the walls may have. Default: the device's own damping, as identified or as "
+                "given by its file. With a value above the true damping the hand gets energy. For "
+                "a real device Limpid uses at most the damping that is known."}}};
     }
   };
 

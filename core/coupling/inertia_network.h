@@ -20,7 +20,7 @@ struct InertiaShape {
 
 // Mass added to the inertia for eta above 1, and the edge up to which it moves along.
 struct AddedMass {
-  double eta;   // the requested one, or as much as the delay allows
+  double eta;   // the requested one, or as much as delay and proxy allow
   double edge;  // w_g of its spring; eta is felt up to about this [rad/s]
 };
 
@@ -30,7 +30,10 @@ struct AddedMass {
 // from beta = w_1 on. So beta t stays below the values found stable with grips of up to 3000 N/m:
 // 0.9 of the tick itself, 0.35 of a delay. If the edge would fall below kSlowest, eta is reduced
 // instead. late: largest delay beyond the tick [ticks].
-AddedMass added_mass(double eta, int late, double T);
+//
+// The law adds mass to device and proxy alike, by the device's velocity alone. A proxy of `ratio` =
+// M2 / M1 with more added than M1 swings against the device, so eta - 1 stays below 1 / ratio.
+AddedMass added_mass(double eta, int late, double T, double ratio);
 
 // Impedance that a network adds to an inertia of 1 kg m^2, without ticks: torque over velocity at w
 // [rad/s]. `band`: the ladder's edge, below eta 1 [Hz].

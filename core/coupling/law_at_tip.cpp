@@ -27,12 +27,12 @@ FeltAtTip felt_mass(std::complex<double> Z, double f) {
 }
 
 TipWall LawAtTip::through_spring(double k_vc) const {
-  return {spring_at_tip(tip, k_vc), "felt through the spring k_vc"};
+  return {spring_at_tip(tip, k_vc), "the wall is felt through the spring k_vc"};
 }
 
 TipWall LawAtTip::on_device(double stiffness, const char* bound) const {
   const double stepped = stepped_wall(encoder_step * std::sqrt(tip.lever2), friction);
-  if (stepped < stiffness) return {stepped, "one encoder step pushes the hand"};
+  if (stepped < stiffness) return {stepped, "the hand feels each encoder step as a push"};
   return {stiffness, bound};
 }
 

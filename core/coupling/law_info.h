@@ -18,7 +18,7 @@ inline constexpr int kMostDelay = 20;  // largest delay of a device [ticks]
 
 // Bound of the energy that the human is given.
 enum class Promise : std::uint8_t {
-  none,        // no bound is known
+  none,        // no limit is known
   condition3,  // nothing, where condition (3) holds
   eta_min,     // nothing in free motion, above eta_min of (25)
   ledger,      // at most the ledger's energy

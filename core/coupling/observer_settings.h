@@ -20,12 +20,14 @@ struct ObserverSettings {
   static constexpr std::array<Field<P>, 3> settings() {
     return {{{"observer.alpha", "\xCE\xB1", "Observer gain \xCE\xB1", &P::alpha, "N m s/rad", 1e-6,
               1e3, 1e-3, 1, true, true,
-              "Gain of the human force observer, L = alpha M^-1, (17)-(18). A larger gain follows "
-              "the hand faster (w_f = alpha / m) and raises eta_min."},
+              "Gain of the human force observer, L = alpha M^-1, equations (17)-(18). With a "
+              "larger gain the estimate follows the hand's force faster (w_f = alpha / m), and "
+              "eta_min is higher."},
              {"observer.anti_windup", "anti-windup", "Observer knows the motors' limit",
               &P::anti_windup, "-", 0, 1, 0, 1, false, true,
-              "Feed the observer with the torque the motors really gave (section 3.1). Without "
-              "it a saturated contact winds the estimate up and the proxy lurks."},
+              "Give the observer the torque that the motors really gave (section 3.1). Without it "
+              "the estimate grows too large while motors are at their limit in contact, and the "
+              "proxy stays behind."},
              {"observer.velocity", "velocity", "Velocity estimate",
               choice<P, &P::velocity>(kVelocitySources), "-", 0, 2, 0, 2, false, true,
               "Velocity estimate: raw difference of positions, low-pass, or adaptive window "

@@ -78,8 +78,9 @@ class Popc final : public Law<N> {
 }  // namespace
 
 TipWall PopcLaw::wall(const LawSettings& p, const LawAtTip& at) {
-  return at.on_device(braked_wall(at.tip, at.loop, p.popc_damping),
-                      "the damping of arm, hand and the law's own damper, held for a tick");
+  return at.on_device(
+      braked_wall(at.tip, at.loop, p.popc_damping),
+      "the damping of arm and hand, and the law's own damper held for a tick, limit the wall");
 }
 
 FeltAtTip PopcLaw::felt(const LawSettings&, const LawAtTip& at, double) { return at.arm_alone(); }

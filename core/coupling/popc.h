@@ -30,7 +30,9 @@ struct PopcLaw {
       .meaning =
           "without a proxy: walls act on the device itself, with a damper that takes back the "
           "energy the walls gave (passivity observer and controller, Hannaford and Ryu 2002).",
-      .verdict = "Its damper takes back most of that energy. Coarse encoders mislead it.",
+      .verdict =
+          "Its damper takes back most of that energy. With coarse encoders it measures the energy "
+          "wrongly.",
       .promise = Promise::observer,
       .on_device = true,
       .for_comparison = true,
@@ -51,9 +53,9 @@ struct PopcLaw {
                 "delay in ticks)."},
                {"popc.reference", "reference", "Reference energy", &P::popc_reference, "-", 0, 1, 0,
                 1, false, true,
-                "PO/PC: the energy that came in is compared to what the walls store. Off: to zero, "
-                "as in 2002, so that a bounce has to use up what was stored before the "
-                "damper acts."}}};
+                "PO/PC: the damper acts if the energy that came in is less than the energy that "
+                "the walls store. Off: the damper acts if it is less than zero (the law of 2002). "
+                "Then a bounce first uses up the stored energy, and the damper acts later."}}};
     }
   };
 

@@ -36,12 +36,12 @@ double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
   return limit.dot(x.cwiseAbs());
 }
 
-// Tells the predictor what the hand may do. on_tip: response of the device to a force at the tip;
-// K: the stiffest wall [N/m].
+// Tells the predictor what the hand may do. on_tip: response of the device to a force at the tip.
 template <int N>
 void expect_hand(Predictor<N>& predictor, const LawInput<N>& in, const Jacobian<N>& J,
-                 const Levers<N>& on_tip, double hand_mass, double K) {
+                 const Levers<N>& on_tip, double hand_mass, const Proxy<N>& proxy) {
   const TipMoved tip = tip_moved(J * on_tip, J * J.transpose());
+  const double K = proxy.contacts().stiffest();
   const double at_rest = resting_rate(K, tip.mass, in.encoder_step * tip.lever);
   predictor.expect_hand(on_tip, J, hand_mass, at_rest);
 }
@@ -52,12 +52,11 @@ void expect_hand(Predictor<N>& predictor, const LawInput<N>& in, const Jacobian<
 // which takes off damping where proxy and hand are heavy. By Routh's criterion device and proxy do
 // not swing against each other, whatever m, if
 //     share phi <= b_vc (1 / (b_vc + k_vc tau) + (M1/alpha) / M2).
-// The traces bound all joints: M2 / M1 is the same for each, and none's inertia exceeds M1's trace.
+// ratio: M2 / M1 of every joint. No joint's inertia exceeds M1's trace, so the share fits all.
 template <int N>
-double fed_forward(const LawSettings& p, const LawInput<N>& in, const Mat<N>& M2) {
+double fed_forward(const LawSettings& p, const LawInput<N>& in, double ratio) {
   constexpr double kSampled = 1.5;  // lag of an acceleration from sampled positions [ticks]
-  const double own = in.device.M.trace(), ratio = M2.trace() / own;
-  const double lag = own / in.alpha + (kSampled + p.delay) * in.T;
+  const double lag = in.device.M.trace() / in.alpha + (kSampled + p.delay) * in.T;
   const double most = p.b_vc * (1 / (p.b_vc + p.k_vc * lag) + 1 / (ratio * in.alpha));
   return std::min(1.0, most * (1 + ratio) / ratio);
 }
@@ -315,17 +314,17 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
   const Locked<N> d(in.device.M, in.device.C, proxy.M(), proxy.C());
   const Levers<N> on_tip =
       d.M_L_factor.solve(Levers<N>(J.transpose()));  // response to a force at the tip
-  const double K = proxy.contacts().stiffest();
-  if (gains.weighs()) expect_hand(predictor_, in, J, on_tip, p.hand_mass, K);
+  if (gains.weighs()) expect_hand(predictor_, in, J, on_tip, p.hand_mass, proxy);
   const TorqueLimits<N> motors(in.limit, J, in.tip_force);
   balance(p, in, proxy, motors, std::min(kSurprise, kPushed * on_tip.norm()));
-  network_.set(added_mass(p.eta, in.delay_most, T), d.M_L, in.ledger->damping(), T, p.band);
+  const AddedMass added = added_mass(p.eta, in.delay_most, T, proxy.ratio());
+  network_.set(added, d.M_L, in.ledger->damping(), T, p.band);
   // The velocity predicted for a late torque is no newer knowledge: the present one damps.
   if (p.delay > 0) network_.damp_now(predictor_.v_now());
   Solve solve(d, network_, predictor_, proxy, in);
   const double share = in.ledger->torque();
   solve.authority *= share;
-  solve.f1_hat *= fed_forward(p, in, proxy.M());
+  solve.f1_hat *= fed_forward(p, in, proxy.ratio());
   solve.c = p.b_vc + p.k_vc * T / 2;
   solve.s0 = p.k_vc * (predictor_.x() - proxy.x());
   solve.g_f = in.ledger->contact();

@@ -52,9 +52,10 @@ struct PredictorSettings {
   static constexpr std::array<Field<P>, 5> settings() {
     return {
         {{"predictor.p", "memory p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
-          "Predictive coupling: memory of the predictor's filter, 0 for none. Recordings of Limpid "
-          "0.2 may have this setting. Default with exact encoders: 0.2. Default with encoder "
-          "steps: no memory; each reading counts by the step and by what the hand may do."},
+          "Predictive coupling: memory of the predictor's filter; 0: no memory. Recordings of "
+          "Limpid 0.2 may have this setting. Default with exact encoders: 0.2. Default with "
+          "encoder steps: no memory; the weight of each reading is computed from the encoder step "
+          "and from the possible motion of the hand."},
          {"predictor.mu", "inertia \xCE\xBC", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3,
           true, true,
           "Predictive coupling: factor on the device's inertia in the predictor. Default: "
@@ -62,16 +63,17 @@ struct PredictorSettings {
          {"predictor.hand_mass", "hand mass m_h", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1,
           false, true,
           "Predictive coupling: mass of hand and handle in the second predictor. The law uses the "
-          "second predictor while this predictor is the better one. 0: no second predictor."},
+          "second predictor while it predicts better than the first one. 0: no second predictor."},
          {"model.delay", "known delay", "Known delay", &P::delay, "ticks", 0, 20, 0, 5, false, true,
-          "Predictive coupling: delay between command and motor that the law reckons with, in "
+          "Predictive coupling: delay between command and motor that the law calculates with, in "
           "ticks."},
          {"model.delay_most", "possible delay", "possible delay", &P::delay_most, "ticks", 0, 20, 0,
           5, false, true,
           "Predictive coupling: largest possible delay between command and motor, in ticks. The "
-          "energy account covers every delay from model.delay to model.delay_most. A larger value "
-          "narrows the band in which eta above 1 is felt. Default: for the virtual arm "
-          "device.delay; for a real device one tick more than the identified delay, or 3."}}};
+          "energy account covers every delay from model.delay to model.delay_most. With a larger "
+          "value eta above 1 is felt in a narrower frequency band. Default for the virtual arm: "
+          "device.delay. Default for a real device: one tick more than the identified delay, or "
+          "3."}}};
   }
 };
 
@@ -82,10 +84,10 @@ struct LedgerSettings {
   static constexpr std::array<Field<P>, 1> settings() {
     return {{{"ledger.energy", "ledger E\xE2\x82\x80", "Energy allowed E\xE2\x82\x80", &P::energy,
               "J", 1e-4, 0.02, 1e-3, 0.02, true, true,
-              "Predictive coupling: the human is given at most this energy beyond the energy that "
-              "came in since the start of the loop, and at most four times this energy in any part "
-              "of that time. When the reserve runs low the law cuts the contact force, the "
-              "cancelled damping and the added inertia."}}};
+              "Predictive coupling: since the start of the loop the human gets at most this energy "
+              "more than the energy that came in. In any shorter time the human gets at most four "
+              "times this energy more. When the reserve is low the law reduces the contact force, "
+              "the cancelled damping and the added inertia."}}};
   }
 };
 
@@ -98,7 +100,7 @@ struct PredictiveLaw {
       .label = "Predictive",
       .meaning =
           "solves device and proxy together for the coming tick and shapes inertia by passive "
-          "networks: stiff walls, light hands, friction, and an account of the energy given.",
+          "networks: allows stiff walls, a light device and friction, and counts the energy given.",
       .verdict = "Recommended: no drift, stiff walls, light, passive.",
       .promise = Promise::ledger,
       .takes_eta = true,
@@ -126,12 +128,12 @@ struct PredictiveLaw {
       constexpr std::array<Field<P>, 2> own{
           {{"coupling.damping", "damping", "Damping felt", &P::felt_damping, "-", kLeastDamping, 1,
             kLeastDamping, 1, false, true,
-            "Predictive coupling: share of the damping b_d + b_v that stays felt in free motion. "
-            "Default: falls with eta, from 1 at eta 1 to 1/3 at eta 0.5 and below."},
+            "Predictive coupling: share of the damping b_d + b_v that the hand still feels in free "
+            "motion. Default: depends on eta, from 1 at eta 1 down to 1/3 at eta 0.5 and below."},
            {"coupling.band", "band", "Band of the inertia", &P::band, "Hz", 0.5, 20, 1, 10, true,
             true,
             "Predictive coupling: up to this frequency the inertia felt is eta times the natural "
-            "one; a wider band costs more damping."}}};
+            "inertia. A wider band needs more damping."}}};
       return joined<P>(own, PredictorSettings::settings<P>(), LedgerSettings::settings<P>());
     }
   };

@@ -63,19 +63,23 @@ std::string told(const BoundedWall& wall, PredictiveWallSetting setting, const L
                          at.loop.T > 1.001 * kTriedTick ? " at a tick of this length" : "");
     case WallBound::quick:
       return fmt::format(
-          "the tip's mass of {:.2g} g moves far in a tick, and the hand is not known",
+          "the tip's mass is {:.2g} g, so the tip moves far in a tick, and no values of the hand "
+          "are known",
           1000 * at.easiest.mass);
-    case WallBound::proxy: return "above this stiffness the proxy's inertia is felt through k_vc";
+    case WallBound::proxy:
+      return "above this stiffness the hand would feel the proxy's inertia through k_vc";
     case WallBound::step:
-      return fmt::format("step: an encoder step of {:.2g} mm at the tip pushes with 0.25 N", q_t);
+      return fmt::format(
+          "step: at this wall an encoder step of {:.2g} mm at the tip pushes with 0.25 N", q_t);
     case WallBound::friction:
-      return fmt::format("friction: {:.2g} N just hold the tip within an encoder step of {:.2g} mm",
-                         setting.friction, q_t);
+      return fmt::format(
+          "friction: {:.2g} N are just enough to hold the tip inside an encoder step of {:.2g} mm",
+          setting.friction, q_t);
     case WallBound::cell:
       setting.friction = kUsualFriction;
       return fmt::format(
-          "cell: the tip swings unseen within an encoder step of {:.2g} mm; {} N of friction would "
-          "allow {:.0f} N/m",
+          "the tip can swing inside an encoder step of {:.2g} mm, and no reading shows it; with {} "
+          "N of friction the wall may have {:.0f} N/m",
           q_t, kUsualFriction, predictive_wall(at.easiest, setting).stiffness);
     case WallBound::hand: return "the hand is heavier than the predictor assumes";
     case WallBound::delay: break;

@@ -37,7 +37,7 @@ TipWall ProposedLaw::wall(const LawSettings&, const LawAtTip& at) {
   WallSetting loop = at.loop;
   loop.delay += at.felt.trip;
   return {proposed_wall(at.tip, loop),
-          "the available damping against the delay of the contact force"};
+          "the damping available is just enough for the delay of the contact force"};
 }
 
 FeltAtTip ProposedLaw::felt(const LawSettings& p, const LawAtTip& at, double f) {

@@ -19,13 +19,15 @@ struct ProposedLaw {
   static constexpr LawInfo kInfo{
       .key = "proposed",
       .label = "Proposed",
-      .meaning = "with feedforward of the observed human force and the contact force, (14)-(15).",
-      .verdict = "The paper's: no drift; passive only above \xCE\xB7_min.",
+      .meaning =
+          "with feedforward of the observed human force and the contact force, equations "
+          "(14)-(15).",
+      .verdict = "The law of the paper: no drift; passive only above \xCE\xB7_min.",
       .promise = Promise::eta_min,
       .loop = LinearLoop::fed_forward,
       .takes_eta = true,
       .observes = true,
-      .through_link = "no bound is known for the feedforward",
+      .through_link = "no stability limit is known with feedforward",
       .sliders = kSliders,
   };
 
@@ -34,14 +36,14 @@ struct ProposedLaw {
 
     template <class P>
     static constexpr std::array<Field<P>, 1> settings() {
-      return {
-          {{"coupling.eta", "\xCE\xB7", "Impedance scaling \xCE\xB7", &P::eta, "-", 0.01, 100, 0.1,
-            10, true, true,
-            "Impedance scaling: how much of the arm the hand feels in free motion. Predictive "
-            "coupling: eta times the inertia M1 + M2, up to coupling.band. Proposed coupling: eta "
-            "times the damping, which dominates slow motion. Equation (12) of the paper says eta "
-            "times the inertia; measured are 0.7 times at eta 0.6, and a negative inertia above "
-            "eta 1. Below eta_min of (25) the proposed coupling is not passive."}}};
+      return {{{"coupling.eta", "\xCE\xB7", "Impedance scaling \xCE\xB7", &P::eta, "-", 0.01, 100,
+                0.1, 10, true, true,
+                "Impedance scaling: how much of the arm the hand feels in free motion. Predictive "
+                "coupling: eta times the inertia M1 + M2, up to coupling.band. Proposed coupling: "
+                "eta times the damping, which dominates slow motion. By equation (12) of the paper "
+                "the hand feels eta times the inertia; measurements show 0.7 times the inertia at "
+                "eta 0.6, and a negative inertia above eta 1. Below eta_min of equation (25) the "
+                "proposed coupling is not passive."}}};
     }
   };
 

@@ -27,14 +27,15 @@ struct SfaLaw {
       .key = "sfa",
       .label = "Augmentation",
       .meaning =
-          "without a proxy: soft walls act on the device itself. Their force grows, while they are "
-          "pressed, up to the right force (successive force augmentation, Singh and others 2020).",
-      .verdict = "Walls grow stiff while they are pressed. This gives energy to the hand.",
+          "without a proxy: soft walls act on the device itself. While they are pressed, their "
+          "force grows up to the correct force (successive force augmentation, Singh and others "
+          "2020).",
+      .verdict = "Walls become stiff while they are pressed. This gives energy to the hand.",
       .promise = Promise::none,
       .on_device = true,
       .for_comparison = true,
       .through_link = "the law renders walls on the device itself and has no link",
-      .torque_share = "Share of the walls' torque that the law has built up.",
+      .torque_share = "Share of the walls' full torque that the law has reached.",
       .sliders = kSliders,
   };
 
@@ -45,19 +46,18 @@ struct SfaLaw {
 
     template <class P>
     static constexpr std::array<Field<P>, 3> settings() {
-      return {
-          {{"sfa.soft", "soft spring rho", "Stiffness to begin with", &P::sfa_soft, "-", 0.05, 1,
-            0.05, 1, false, true,
-            "Augmentation: stiffness to begin with, as a part of b_d/(T/2 + delay), up to which "
-            "every hand is stable."},
-           {"sfa.step", "step sigma", "Part added at a time", &P::sfa_step, "-", 0.01, 1, 0.01, 1,
-            false, true,
-            "Augmentation: part of the missing force that one increment adds, before the hand "
-            "yields."},
-           {"sfa.extended", "extended", "Begin with the whole wall", &P::sfa_extended, "-", 0, 1, 0,
-            1, false, true,
-            "Augmentation: a wall pushes in full until the hand first moves back or rests. Off: "
-            "the wall is soft from the start."}}};
+      return {{{"sfa.soft", "soft spring rho", "Stiffness at the start", &P::sfa_soft, "-", 0.05, 1,
+                0.05, 1, false, true,
+                "Augmentation: stiffness at the start, as a part of b_d/(T/2 + delay). Up to that "
+                "stiffness the wall is stable in every hand."},
+               {"sfa.step", "step sigma", "Part added at a time", &P::sfa_step, "-", 0.01, 1, 0.01,
+                1, false, true,
+                "Augmentation: part of the missing force that one increment adds if the hand does "
+                "not move."},
+               {"sfa.extended", "extended", "Start with the full stiffness of the wall",
+                &P::sfa_extended, "-", 0, 1, 0, 1, false, true,
+                "Augmentation: a wall pushes with its full stiffness until the hand moves back or "
+                "rests for the first time. Off: the wall is soft from the start."}}};
     }
   };
 

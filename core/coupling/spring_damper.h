@@ -17,16 +17,17 @@ struct SpringDamper {
   static constexpr std::array<Field<P>, 3> settings() {
     return {{{"coupling.k_vc", "k_vc", "Coupling spring k_vc", &P::k_vc, "N m/rad", 1e-3, 1e4, 0.1,
               100, true, true,
-              "Spring between device and proxy, (1)-(2). A stiffer spring keeps both closer, until "
-              "condition (3) breaks: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2."},
+              "Spring between device and proxy, equations (1)-(2). A stiffer spring keeps both "
+              "closer together. It must not break condition (3): b_d >= 2 b_vc + k_vc T and b_v >= "
+              "k_vc T / 2."},
              {"coupling.b_vc", "b_vc", "Coupling damper b_vc", &P::b_vc, "N m s/rad", 0, 100, 1e-5,
               0.1, true, true,
-              "Damper between device and proxy, (1)-(2). The damper acts on a delayed velocity, so "
-              "condition (3) asks for twice this damping from the device."},
+              "Damper between device and proxy, equations (1)-(2). The damper acts on a delayed "
+              "velocity, so by condition (3) the device needs twice this damping."},
              {"coupling.b_v", "b_v", "Proxy damper b_v", &P::b_v, "N m s/rad", 0, 100, 1e-4, 1,
               true, true,
-              "Damping of the proxy, (2). Felt through the coupling; condition (3) asks for "
-              "at least k_vc T / 2."}}};
+              "Damping of the proxy, equation (2). The hand feels it through the coupling. "
+              "Condition (3) asks for at least k_vc T / 2."}}};
   }
 };
 
@@ -48,17 +49,18 @@ struct LinkSettings {
     return {
         {{"link.delay", "link delay", "Link delay, each way", &P::link_delay, "ticks", 0,
           kMostLinkDelay, 0, 100, false, true,
-          "Delay between device and proxy, each way, as if the world were far away. The predictive "
-          "coupling solves device and proxy together and has no link."},
+          "Delay between device and proxy in each direction, as if the world were far away. The "
+          "predictive coupling solves device and proxy together and has no link."},
          {"link.jitter", "link jitter", "Link jitter", &P::link_jitter, "ticks", 0, kMostLinkJitter,
           0, 20, false, true,
           "Each packet between device and proxy takes up to this many ticks more, at random. "
           "Device and proxy use the newest packet that has arrived."},
          {"link.loss", "link loss", "Packets lost", &P::link_loss, "-", 0, 0.9, 0, 0.5, false, true,
-          "Share of the packets between device and proxy that never arrive; a side without a new "
-          "packet keeps the last one."},
+          "Share of the packets between device and proxy that never arrive. A side without a new "
+          "packet keeps using its last packet."},
          {"link.seed", "link seed", "link seed", &P::link_seed, "-", 0, 1e9, 0, 100, false, true,
-          "Whole number from which the random numbers of link.jitter and link.loss follow."}}};
+          "Whole number from which the random numbers for link.jitter and link.loss are "
+          "computed."}}};
   }
 };
 
@@ -77,7 +79,7 @@ struct LinkSettings {
 // Spong (2006) and Nuno et al. (2009) for such couplings in continuous time. Velocities that are
 // held for want of newer ones act up to j + 1 times.
 //
-// The condition covers spring and damper alone: no bound is known for torques that the proposed law
+// The condition covers spring and damper alone: no limit is known for torques that the proposed law
 // feeds forward through a link.
 struct Condition3 {
   double device_margin = 0;  // b_d less the bound, at the joint with the least [N m s/rad]

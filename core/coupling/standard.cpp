@@ -23,9 +23,9 @@ class Standard final : public Law<N> {
 }  // namespace
 
 TipWall StandardLaw::wall(const LawSettings& p, const LawAtTip& at) {
-  if (!at.condition3.known) return {0, "no bound is known because packets are lost (link.loss)"};
+  if (!at.condition3.known) return {0, "no limit is known because packets are lost (link.loss)"};
   if (!at.condition3.holds) {
-    return {0, "condition (3) is broken: the coupling is not passive in free motion either"};
+    return {0, "condition (3) is broken: the coupling is not passive, not even in free motion"};
   }
   return at.through_spring(p.k_vc);
 }

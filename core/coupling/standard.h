@@ -15,11 +15,11 @@ struct StandardLaw {
   static constexpr LawInfo kInfo{
       .key = "standard",
       .label = "Standard",
-      .meaning = "spring and damper alone, (1)-(2).",
-      .verdict = "The usual one: hand and world drift apart.",
+      .meaning = "only spring and damper, equations (1)-(2).",
+      .verdict = "The usual coupling. The distance between hand and world grows.",
       .promise = Promise::condition3,
       .loop = LinearLoop::behind_spring,
-      .through_link = "passive where (3) holds",
+      .through_link = "passive if condition (3) is true",
       .sliders = kSliders,
   };
 

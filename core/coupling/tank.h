@@ -27,9 +27,11 @@ struct TankLaw {
       .key = "tank",
       .label = "Tank",
       .meaning =
-          "the standard coupling with an energy tank on each side, which bounds the energy given "
-          "whatever the link between them does.",
-      .verdict = "Passive through any delay; soft, and heavy as the standard one.",
+          "the standard coupling with an energy tank on each side. The tanks limit the energy "
+          "given, whatever happens on the link between them.",
+      .verdict =
+          "Passive at any delay. Walls are soft; the device feels as heavy as with the standard "
+          "coupling.",
       .promise = Promise::tanks,
       .for_links = true,
       .through_link = "passive at any delay, jitter and loss",
@@ -47,20 +49,20 @@ struct TankLaw {
       return {{{"tank.energy", "tanks E\xE2\x82\x80", "Energy of both tanks", &P::tank_energy, "J",
                 1e-4, 1, 1e-3, 0.02, true, true,
                 "Tank coupling: energy of both tanks at the start, half in each tank. Coupling and "
-                "device never give more than this energy beyond the energy that came in."},
-               {"tank.most", "tank's most", "tank's most", &P::tank_most, "J", 1e-4, 100, 1e-2, 1,
+                "device together never give more than this energy plus the energy that came in."},
+               {"tank.most", "tank's limit", "tank's limit", &P::tank_most, "J", 1e-4, 100, 1e-2, 1,
                 true, true,
-                "Tank coupling: the most energy that each tank keeps. Over any stretch of time the "
-                "coupling may give this much more than it took."},
+                "Tank coupling: largest energy that each tank keeps. In any time interval the "
+                "coupling may give this much more energy than it took."},
                {"tank.share", "tank's share", "tank's share", &P::tank_share, "-", 1e-4, 1, 1e-3, 1,
                 true, true,
                 "Tank coupling: share of the surplus that a tank sends to the other tank in each "
                 "tick. The surplus is the tank's energy above half of tank.energy."},
                {"tank.damping", "refill", "Refilling damper", &P::tank_damping, "1/s", 0, 200, 0,
                 200, false, true,
-                "Tank coupling: damper that fills the device's tank from the hand while the tank "
-                "holds less than half of tank.energy. The damping is up to this rate times the "
-                "device's inertia."}}};
+                "Tank coupling: damper that fills the device's tank with energy from the hand "
+                "while the tank holds less than half of tank.energy. The damping is at most this "
+                "rate times the device's inertia."}}};
     }
   };
 

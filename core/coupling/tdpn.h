@@ -27,15 +27,18 @@ struct TdpnLaw {
       .key = "tdpn",
       .label = "Two-port TDPA",
       .meaning =
-          "device velocity goes to the proxy, force goes back. Dampers keep both ports passive "
-          "(Ryu, Artigas and Preusche 2010).",
-      .verdict = "Its dampers take back most of the energy given. Device and proxy drift apart.",
+          "sends the device's velocity to the proxy and a force back. A damper on each side keeps "
+          "both sides passive (Ryu, Artigas and Preusche 2010).",
+      .verdict =
+          "Its dampers take most of the given energy out again. The distance between device and "
+          "proxy grows.",
       .promise = Promise::observer,
       .for_links = true,
       .for_comparison = true,
-      .through_link = "what both ports gave is taken back; stiffness falls with the delay",
+      .through_link =
+          "dampers take back the energy that both ports gave; a longer delay makes walls softer",
       .damper_share =
-          "100 % while the device's damper does not act, 0 % at the largest one allowed",
+          "100 % while the device's damper does not act, 0 % at the largest damper allowed",
       .sliders = kSliders,
   };
 
@@ -51,8 +54,8 @@ struct TdpnLaw {
                 "by (1 + delay in ticks)."},
                {"tdpn.drift", "drift", "Drift taken back", &P::tdpn_drift, "-", 0, 0.2, 0, 0.2,
                 false, true,
-                "Two-port TDPA: part of the drift between device and proxy that the law takes back "
-                "in a tick, as far as energy is left."}}};
+                "Two-port TDPA: part of the distance (drift) between device and proxy that the law "
+                "removes in a tick, if enough energy is left."}}};
     }
   };
 

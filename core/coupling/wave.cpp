@@ -100,7 +100,7 @@ class Wave final : public Law<N> {
 
 TipWall WaveLaw::wall(const LawSettings& p, const LawAtTip& at) {
   return {line_at_tip(at.tip, p.k_vc, p.line(), (at.link.oldest() + 0.5) * at.loop.T),
-          "felt through the spring k_vc and the line: 1/(1/k_vc + (link + T/2)/b)"};
+          "the wall is felt through the spring k_vc and the line: 1/(1/k_vc + (link + T/2)/b)"};
 }
 
 FeltAtTip WaveLaw::felt(const LawSettings& p, const LawAtTip& at, double) {

@@ -32,9 +32,10 @@ struct WaveLaw {
       .key = "wave",
       .label = "Wave variables",
       .meaning =
-          "waves on a line tie device and proxy, whatever the delay (Niemeyer and Slotine "
-          "1991).",
-      .verdict = "Stable through any delay. Walls are as soft as its line.",
+          "waves on a line connect device and proxy, at any delay (Niemeyer and Slotine 1991).",
+      .verdict =
+          "Stable with any delay. Walls feel no stiffer than the wave line between device and "
+          "proxy.",
       .promise = Promise::line,
       .for_links = true,
       .for_comparison = true,
@@ -51,12 +52,12 @@ struct WaveLaw {
     static constexpr std::array<Field<P>, 2> settings() {
       return {{{"wave.b", "line b", "Impedance of the line", &P::wave_b, "N m s/rad", 1e-5, 10,
                 1e-3, 0.1, true, true,
-                "Wave variables: impedance b of the line. Default: b_v, which the proxy's damper "
-                "matches. A larger b feels stiffer through a delay, and drags more."},
+                "Wave variables: wave impedance b. Default: b_v; the proxy's damper has the same "
+                "value. With a delay a larger b feels stiffer and resists free motion more."},
                {"wave.matched", "matched", "Line matched at the device", &P::wave_matched, "-", 0,
                 1, 0, 1, false, true,
-                "Wave variables: a damper b beside the device takes up what comes back. Off: waves "
-                "are reflected there."}}};
+                "Wave variables: a damper b at the device absorbs the waves that come back. Off: "
+                "the device reflects these waves."}}};
     }
   };
 

@@ -125,7 +125,7 @@ std::string HapticThread::run_until_failure_or_stop() noexcept {
   } catch (const std::exception& e) {
     return e.what();
   } catch (...) {
-    return "the tick threw something unknown";
+    return "the tick ended with an unknown error";
   }
 }
 

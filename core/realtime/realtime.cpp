@@ -108,11 +108,13 @@ void set_priority(RealtimeReport& report, const AskForPriority& ask) {
   if (ask && become_realtime_by_asking(ask)) {
     report.scheduling = Scheduling::rtkit;
     report.priority = kRtkitPriority;
-    report.explanation = "real-time through rtkit, priority " + std::to_string(kRtkitPriority);
+    report.explanation =
+        "real-time by the service rtkit, priority " + std::to_string(kRtkitPriority);
     return;
   }
   report.explanation = "no real-time priority: RLIMIT_RTPRIO forbids it";
-  report.explanation += ask ? " and rtkit did not grant it" : " and rtkit was not asked";
+  report.explanation +=
+      ask ? " and rtkit did not grant it" : " and the service rtkit was not asked";
 }
 
 // Undoes yield_to_haptics() of the thread that made this one. The system allows that only to the

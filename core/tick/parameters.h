@@ -38,7 +38,7 @@ struct CompensationSettings {
         {{"model.gravity", "hold the weight", "Motors hold the weight", &P::holds_weight, "-", 0, 1,
           0, 1, false, true,
           "The motors hold the arm's own weight, as given by the arm's file and device.down. Off: "
-          "the device holds its weight without the motors, by counterweights for example."},
+          "the device holds its weight without the motors, for example by counterweights."},
          {"model.friction", "friction taken off", "Friction that motors cancel", &P::friction_share,
           "-", 0, kMostShare, 0, kMostShare, false, true,
           "Share of the joints' Coulomb friction that the motors cancel. The device stays passive "
@@ -46,7 +46,8 @@ struct CompensationSettings {
           "that you do not know."},
          {"model.springs", "hold the springs", "Motors hold the springs", &P::holds_springs, "-", 0,
           1, 0, 1, false, true,
-          "The motors hold against the device's own springs, as given by the arm's file."}}};
+          "The motors cancel the torque of the device's own springs, as given by the arm's "
+          "file."}}};
   }
 };
 
@@ -63,7 +64,8 @@ struct ControllerSettings : LawSettings, ObserverSettings, CompensationSettings 
     constexpr std::array<Field<P>, 1> kBelief{
         {{"model.inertia_error", "inertia error", "Error of the model's inertia", &P::inertia_error,
           "-", 0.01, 100, 0.1, 10, true, true,
-          "Factor on the device inertia that the controller believes (section 3.2)."}}};
+          "The controller assumes this factor times the true device inertia (section 3.2 of the "
+          "paper)."}}};
     return joined(kKind, law_settings<P>(), ObserverSettings::settings<P>(), kBelief,
                   CompensationSettings::settings<P>());
   }
@@ -80,7 +82,7 @@ struct LoopSettings : LinkSettings {
         {{"proxy.inertia_ratio", "M\xE2\x82\x82/M\xE2\x82\x81",
           "Proxy inertia M\xE2\x82\x82/M\xE2\x82\x81", &P::inertia_ratio, "-", 1e-8, 100, 1e-5, 1,
           true, true,
-          "Inertia of the proxy as a part of the device's inertia (section 4.1: 1e-4)."},
+          "Inertia of the proxy divided by the device's inertia (section 4.1 of the paper: 1e-4)."},
          {"loop.tick", "tick T", "tick T", &P::tick, "s", 1e-5, 0.1, 1e-4, 0.01, true, false,
           "Time between two ticks of the loop, T."}}};
     return joined(LinkSettings::settings<P>(), kOwn);
@@ -121,32 +123,35 @@ struct DeviceSettings {
   static constexpr std::array<Field<P>, 9> settings() {
     return {
         {{"device.substeps", "substeps", "substeps", &P::substeps, "-", 1, 1000, 1, 100, true,
-          false, "Integration steps of the virtual device per tick, motor torque held."},
+          false,
+          "Integration steps of the virtual device per tick. The motor torque stays constant in a "
+          "tick."},
          {"device.delay", "delay", "Device delay", &P::device_delay, "ticks", 0, kMostDelay, 0, 5,
           false, true,
-          "Ticks from a command to the torque of the virtual device's motors. model.delay tells "
+          "Delay from a command to the torque of the virtual device's motors. model.delay tells "
           "the predictive coupling the delay to expect."},
          {"device.encoder_step", "encoder step", "Encoder step", &P::encoder_step, "rad", 0,
           kMostEncoderStep, 0, 2e-3, false, true,
-          "Step of the joint encoders; 0 is exact. An Omni has 4e-4 rad. For a real device Limpid "
-          "never takes less than the device reports."},
+          "Step of the joint encoders; 0: exact encoders. An Omni has 4e-4 rad. For a real device "
+          "Limpid never uses a smaller step than the device reports."},
          {"device.friction", "friction", "Device friction", &P::friction, "N m", 0, 100, 0, 0.05,
-          false, true, "Coulomb friction of every joint; default: the arm's file."},
+          false, true, "Coulomb friction of every joint. Default: from the arm's file."},
          {"device.damping", "b_d", "Device damping b_d", &P::damping, "N m s/rad", 0, 100, 1e-4,
           0.1, true, true,
-          "The device's own viscous damping, b_d of (1): not commanded by the motors. Condition "
-          "(3) asks for at least 2 b_vc + k_vc T. Default: the arm's file."},
+          "The device's own viscous damping, b_d of equation (1); the motors do not make it. "
+          "Condition (3) asks for at least 2 b_vc + k_vc T. Default: from the arm's file."},
          {"device.torque_limit", "torque limit", "Motors' largest torque", &P::torque_limit, "N m",
           1e-6, 1e4, 0.01, 5, true, true,
-          "Largest torque of every motor (section 3.1); default: the arm's file."},
+          "Largest torque of every motor (section 3.1 of the paper). Default: from the arm's "
+          "file."},
          {"device.gravity", "weight", "Virtual arm has weight", &P::weighs, "-", 0, 1, 0, 1, false,
           true,
-          "The virtual arm has the weight of its file, and falls without a hand. Off: "
-          "counterweights hold the arm. model.gravity lets the motors hold the arm."},
+          "The virtual arm has the weight given by its file, and falls if no hand holds it. Off: "
+          "counterweights hold the arm. With model.gravity the motors hold the arm."},
          {"device.springs", "springs", "Virtual arm has springs", &P::springy, "-", 0, 1, 0, 1,
           false, true,
-          "The virtual arm has the springs of its file, as an identified arm has. model.springs "
-          "lets the motors hold against these springs."},
+          "The virtual arm has the springs given by its file; the file of an identified arm has "
+          "springs. With model.springs the motors cancel the torque of these springs."},
          {"device.down", "down", "Down, seen from the base", choice<P, &P::down>(kDowns), "-", 0, 6,
           0, 6, false, true,
           "Direction of gravity in the frame of the arm's base, for an arm that hangs or lies on "
@@ -174,26 +179,26 @@ struct PlantSettings {
           "knows this setting, nor any other plant setting."},
          {"plant.current_loop", "current loop", "Bandwidth of the current loop", &P::current_loop,
           "Hz", 0, 1e4, 0, 1000, false, true,
-          "The motors' torque follows the command as a first-order lag of this bandwidth; 0: at "
-          "once. Amplifiers have 200 to 2000 Hz."},
+          "The motors' torque follows the command with a first-order lag of this bandwidth; 0: "
+          "without lag. Real amplifiers have 200 to 2000 Hz."},
          {"plant.resonance", "resonance", "Resonance of the transmission", &P::resonance, "Hz", 0,
           1000, 0, 300, false, true,
           "Each motor, with its encoder, drives its joint through a spring. This setting is the "
           "motor's resonance frequency while the joint is held. 0: a rigid transmission. A part of "
-          "the arm's inertia counts as the motors'."},
+          "the arm's inertia is counted as motor inertia."},
          {"plant.cogging", "cogging", "Cogging torque", &P::cogging, "N m", 0, 10, 0, 0.02, false,
-          true, "Amplitude of the motors' cogging torque, 60 periods a turn of the joint."},
+          true, "Amplitude of the motors' cogging torque, 60 periods per turn of the joint."},
          {"plant.friction", "unknown friction", "Friction that no law knows", &P::unknown_friction,
           "N m", 0, 100, 0, 0.05, false, true,
-          "Coulomb friction of every joint besides device.friction."},
+          "Coulomb friction of every joint, in addition to device.friction."},
          {"plant.eccentricity", "eccentricity", "Eccentricity of the encoders", &P::eccentricity,
           "rad", 0, 0.05, 0, 0.01, false, true,
-          "Amplitude of an error of every encoder that repeats ten times a turn of the joint, as "
-          "that of an eccentric disc on a motor geared by ten does."},
+          "Amplitude of an error of every encoder. The error repeats ten times per turn of the "
+          "joint, for example if the encoder disc of a motor with a 10:1 gear is eccentric."},
          {"plant.zero", "zero", "Error of the encoders' zero", &P::zero_error, "rad", -0.5, 0.5,
           -0.1, 0.1, false, true,
-          "Every encoder reads too much by this angle, as after a wrong calibration. A change "
-          "while the loop runs acts as an encoder that slips."}}};
+          "Every encoder shows an angle that is too large by this value, for example after a wrong "
+          "calibration. A change while the loop runs has the effect of an encoder that slips."}}};
   }
 };
 

@@ -118,116 +118,128 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::device_position, "/device/position", ColumnWidth::dof, "rad", "x1, true"},
     {Column::device_velocity, "/device/velocity", ColumnWidth::dof, "rad/s", "v1, true"},
     {Column::measured_position, "/device/measured_position", ColumnWidth::dof, "rad",
-     "x1 as the loop saw it"},
+     "x1 as the loop measured it"},
     {Column::measured_velocity, "/device/measured_velocity", ColumnWidth::dof, "rad/s",
-     "velocity estimate the observer used"},
+     "velocity estimate that the observer used"},
     {Column::commanded_torque, "/device/commanded_torque", ColumnWidth::dof, "N m",
-     "tau1 of (1) or (14) without the device's own damping"},
-    {Column::motor_torque, "/device/motor_torque", ColumnWidth::dof, "N m", "what the motors got"},
+     "tau1 of equation (1) or (14), without the device's own damping"},
+    {Column::motor_torque, "/device/motor_torque", ColumnWidth::dof, "N m",
+     "torque sent to the motors, after all limits"},
     {Column::proxy_position, "/proxy/position", ColumnWidth::dof, "rad", "x2"},
     {Column::proxy_velocity, "/proxy/velocity", ColumnWidth::dof, "rad/s", "v2"},
-    {Column::proxy_torque, "/proxy/torque", ColumnWidth::dof, "N m", "tau2 over the tick"},
-    {Column::contact_torque, "/proxy/contact_torque", ColumnWidth::dof, "N m", "f2 over the tick"},
-    {Column::hand_target, "/hand/target", ColumnWidth::three, "m", "where the hand wants the tip"},
+    {Column::proxy_torque, "/proxy/torque", ColumnWidth::dof, "N m", "tau2 during the tick"},
+    {Column::contact_torque, "/proxy/contact_torque", ColumnWidth::dof, "N m",
+     "f2 during the tick"},
+    {Column::hand_target, "/hand/target", ColumnWidth::three, "m",
+     "where the hand wants the tip to be"},
     {Column::hand_torque, "/hand/torque", ColumnWidth::dof, "N m",
-     "f1, mean over the tick; not a number for a real device"},
+     "f1, mean of the tick; not a number for a real device"},
     {Column::hand_torque_estimate, "/hand/torque_estimate", ColumnWidth::dof, "N m",
      "f1_hat used at t_k"},
-    {Column::hand_grip, "/hand/grip", ColumnWidth::one, "-", "1 the hand holds, 0 it let go"},
+    {Column::hand_grip, "/hand/grip", ColumnWidth::one, "-",
+     "1: the hand holds the device; 0: it does not"},
     {Column::force_wanted, "/device/force_wanted", ColumnWidth::one, "-",
-     "1 force armed, 0 force off", true},
+     "1: force armed; 0: force off", true},
     {Column::force_state, "/device/force_state", ColumnWidth::one, "-",
-     "0 force on; else why not: 1 not armed, 2 no hand, 3 stale, 4 fault, 5 lost, 6 too fast, "
-     "7 out of range, 8 energy, 9 diverged, 10 the window does not answer, 11 the loop stood "
-     "still, 12 the readings stand still, 13 a reading says what cannot be",
+     "0: force on; else the reason why it is off or reduced: 1 not armed, 2 no hand, 3 no new "
+     "reading, 4 fault, 5 not connected, 6 too fast, 7 out of range, 8 too much energy, 9 "
+     "unstable, 10 the window does not answer, 11 the loop stopped, 12 the readings do not change, "
+     "13 a reading is impossible",
      true},
     {Column::kind, "/coupling/kind", ColumnWidth::one, "-", kLawNumbers.data(), true},
     {Column::eta, "/coupling/eta", ColumnWidth::one, "-", "impedance scaling"},
     {Column::alpha, "/coupling/alpha", ColumnWidth::one, "N m s/rad", "observer gain"},
     {Column::governor, "/coupling/governor", ColumnWidth::one, "-",
-     "share of the contact force that the ledger lets through; tank: the proxy's damping by that "
-     "with what its tank adds"},
+     "share of the contact force that the energy account allows; tank: the proxy's damping divided "
+     "by the sum of this damping and the damping that its tank adds"},
     {Column::damping_governor, "/coupling/damping_governor", ColumnWidth::one, "-",
-     "share of the damping that the ledger lets the law cancel; popc: 1 minus its damper in force"},
+     "share of the damping cancellation that the energy account allows; popc: 1 minus the share of "
+     "its largest damper that acts"},
     {Column::torque_governor, "/coupling/torque_governor", ColumnWidth::one, "-",
-     "share of all torque that the ledger, the device's tank or the account of eba lets "
-     "through; sfa: of the walls' torque what it has built up"},
+     "share of all torque that the energy account (predictive, eba) or the device's tank allows; "
+     "sfa: share of the walls' full torque that it has reached"},
     {Column::solved, "/coupling/solved", ColumnWidth::one, "-",
-     "how the tick was solved: 0 as usual; with the predictive law 1 with motors at their limit, 2 "
-     "contacts that did not settle one after the other; 3 no solution: the proxy stood still",
+     "how the tick was solved: 0 as usual; with the predictive law also 1: with motors at their "
+     "limit, 2: solving one contact after the other did not succeed; 3: no solution, the proxy did "
+     "not move",
      true},
     {Column::unsettled, "/coupling/unsettled", ColumnWidth::one, "-",
-     "ticks so far in which contacts, and with the predictive law motors at their limit, had no "
-     "common solution; the proxy stood still for them"},
+     "ticks so far without a common solution for all contacts (predictive law: and for motors at "
+     "their limit); the proxy did not move in these ticks"},
     {Column::energy_total, "/energy/controller_total", ColumnWidth::one, "J",
      "E_c with the device's own damping"},
     {Column::energy_commanded, "/energy/controller_commanded", ColumnWidth::one, "J",
      "E_c of motors and proxy"},
     {Column::energy_port, "/energy/port", ColumnWidth::one, "J",
-     "energy given to the human: work of the motors minus what the device's own damping takes"},
+     "energy given to the human: work of the motors minus the energy that the device's own damping "
+     "takes"},
     {Column::energy_ledger, "/energy/ledger", ColumnWidth::one, "J",
-     "reserve of the ledger, or what is in both tanks and on its way between them; 0 until a law "
-     "with an account was in force"},
+     "reserve of the energy account, or energy in both tanks and on its way between them; 0 until "
+     "a law with an energy account has run"},
     {Column::proxy_kinetic, "/energy/proxy_kinetic", ColumnWidth::one, "J",
      "kinetic energy of the proxy"},
     {Column::contact_potential, "/energy/contact_potential", ColumnWidth::one, "J",
      "energy stored in the contacts"},
     {Column::contact_gain, "/energy/contact_gain", ColumnWidth::one, "J",
-     "energy the contacts gave beyond what they had stored"},
+     "energy that the contacts gave in addition to the energy they had stored"},
     {Column::contact_point, "/contact/point", ColumnWidth::contacts, "m",
-     "where the proxy is touched: x, y, z of at most four contacts, the hardest; else not a "
-     "number"},
+     "points where the proxy is touched: x, y, z of at most four contacts, those with the largest "
+     "force; not a number for contacts that do not exist"},
     {Column::contact_force, "/contact/force", ColumnWidth::contacts, "N",
-     "force on the proxy there, over the tick"},
+     "force on the proxy at these points, during the tick"},
     {Column::compensation_torque, "/device/compensation_torque", ColumnWidth::dof, "N m",
-     "for weight, springs and friction of the device, and to measure the grip, in addition to "
-     "tau1"},
-    {Column::energy_compensation, "/energy/compensation", ColumnWidth::one, "J",
-     "what of E_c the motors gave for weight, springs and friction of the device, and to measure "
+     "torque in addition to tau1, for weight, springs and friction of the device and to measure "
      "the grip"},
+    {Column::energy_compensation, "/energy/compensation", ColumnWidth::one, "J",
+     "the part of E_c that the motors gave to cancel weight, springs and friction of the device "
+     "and to measure the grip"},
     {Column::body_pose, "/objects/pose", ColumnWidth::poses, "m",
-     "of each body: x, y, z of its centre of mass, and its rotation as a quaternion w, x, y, z "
+     "for each body: x, y, z of its centre of mass, and its rotation as a quaternion w, x, y, z "
      "[-]"},
     {Column::body_velocity, "/objects/velocity", ColumnWidth::velocities, "m/s",
-     "of each body: velocity of its centre of mass, x, y, z, then its angular velocity, x, y, z "
+     "for each body: velocity of its centre of mass, x, y, z, then its angular velocity, x, y, z "
      "[rad/s]"},
     {Column::energy_to_objects, "/energy/to_objects", ColumnWidth::if_bodies, "J",
-     "what the proxy has given to bodies"},
+     "energy that the proxy has given to bodies"},
     {Column::energy_objects, "/energy/objects", ColumnWidth::if_bodies, "J",
-     "of bodies: kinetic energy, weight, and what contacts and springs among them store"},
+     "energy of the bodies: kinetic energy, potential energy of their weight, and energy stored in "
+     "contacts and springs between them"},
     {Column::objects_gain, "/energy/objects_gain", ColumnWidth::if_bodies, "J",
-     "what bodies have beyond what they had and were given, by pulls too; less than 0 while they "
-     "lose "
-     "some"},
-    {Column::objects_awake, "/objects/awake", ColumnWidth::if_bodies, "-", "bodies that move"},
+     "energy of the bodies minus the energy they had at the start and were given, pulls included; "
+     "below 0 if they lost energy"},
+    {Column::objects_awake, "/objects/awake", ColumnWidth::if_bodies, "-",
+     "number of bodies that move"},
     {Column::objects_sweeps, "/objects/sweeps", ColumnWidth::if_bodies, "-",
-     "over all contacts, until a tick's forces were found"},
+     "iterations over all contacts until the forces of the tick were found"},
     {Column::objects_left_out, "/objects/left_out", ColumnWidth::if_bodies, "-",
-     "points at which bodies touch beyond as many as the loop has room for: these do not push"},
+     "number of contact points of bodies that exceed the loop's memory: these points do not push"},
     {Column::objects_stood_still, "/objects/stood_still", ColumnWidth::if_bodies, "-",
-     "ticks so far in which the solver found no forces for bodies: they stood still in these"},
+     "ticks so far in which the solver found no forces for the bodies; the bodies did not move in "
+     "these ticks"},
     {Column::objects_turned_less, "/objects/turned_less", ColumnWidth::if_bodies, "-",
-     "ticks so far in which a body of a mechanism would have turned by more than a radian: it "
-     "turned less"},
+     "ticks so far in which a body of a mechanism would have turned by more than one radian; it "
+     "turned by less"},
     {Column::magnet, "/objects/held", ColumnWidth::if_bodies, "-",
-     "number of the body that the magnet held over the tick, from 1 on; 0 none"},
+     "number of the body that the magnet held during the tick, counted from 1; 0: none"},
     {Column::hand_magnet, "/hand/magnet", ColumnWidth::if_bodies, "-",
-     "1 the hand wants the tip to pick up what it may, 0 it does not", true},
+     "1: the hand wants the tip to pick up a body that a magnet can hold; 0: it does not", true},
     {Column::hand_pull, "/hand/pull", ColumnWidth::if_bodies, "-",
-     "number of the body that is pulled on in the picture, from 1 on; 0 none", true},
+     "number of the body that the mouse pulls in the picture, counted from 1; 0: none", true},
     {Column::pull_point, "/hand/pull_point", ColumnWidth::three_if_bodies, "m",
-     "where on it, in its frame"},
-    {Column::pull_target, "/hand/pull_target", ColumnWidth::three_if_bodies, "m", "where to"},
+     "point of the body where it is pulled, in the body's frame"},
+    {Column::pull_target, "/hand/pull_target", ColumnWidth::three_if_bodies, "m",
+     "point to which the body is pulled"},
     {Column::energy_pulled, "/energy/pulled", ColumnWidth::if_bodies, "J",
-     "what these pulls have given to bodies"},
+     "energy that these pulls have given to bodies"},
     {Column::tool_orientation, "/device/orientation", ColumnWidth::four, "-",
-     "of the tool in the hand as a quaternion w, x, y, z, 1 0 0 0 if it points forward; not a "
-     "number if it is not known"},
+     "orientation of the tool in the hand as a quaternion w, x, y, z; 1 0 0 0: it points forward; "
+     "not a number if it is not known"},
     {Column::motor_warmth, "/device/warmth", ColumnWidth::dof, "-",
-     "of each motor from 0 cold to 1 as warm as it may be: by the arm's model, or what the device "
-     "says of its hottest one if that is more; 0 if neither is known"},
+     "warmth of each motor, from 0 (cold) to 1 (as warm as allowed): the value of the arm's model, "
+     "or the value that the device reports for its hottest motor if it is larger; 0 if neither is "
+     "known"},
     {Column::excitation, "/device/excitation", ColumnWidth::three, "N",
-     "force that the motors are asked to make at the tip, to measure the grip: x, y, z; 0 else"},
+     "force commanded at the tip to measure the grip: x, y, z; 0 if nothing is measured"},
     {Column::wake_latency, "/timing/wake_latency", ColumnWidth::one, "s",
      "how late the tick began"},
     {Column::compute, "/timing/compute", ColumnWidth::one, "s", "how long the tick took"},

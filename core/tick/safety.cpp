@@ -40,10 +40,10 @@ const char* explain(ForceState state) {
     case ForceState::lost: return "the device is not connected";
     case ForceState::too_fast: return "the device moves too fast";
     case ForceState::too_far: return "a joint is out of its range";
-    case ForceState::energy: return "the motors put out too much energy";
+    case ForceState::energy: return "the motors gave too much energy";
     case ForceState::diverged: return "the loop became unstable";
     case ForceState::unwatched: return "the window did not answer for 0.2 s";
-    case ForceState::stalled: return "the loop has just begun, or stood still for more than 5 ms";
+    case ForceState::stalled: return "the loop has just started, or stopped for more than 5 ms";
     case ForceState::frozen:
       return "the readings do not change while the motors push: move the device";
     case ForceState::wrong: return "the device reported an impossible position";

@@ -48,9 +48,10 @@ inline constexpr auto kSafetyLimits = [] {
       limit("tip_force", "tip force", &L::tip_force, 0.1, "N",
             "Largest force of the motors at the tip."),
       limit("energy", "energy in one second", &L::energy, 0.02, "J",
-            "Largest energy that the motors put out in one second."),
+            "Largest energy that the motors may give in one second."),
       limit("range", "part of the range", &L::range, 0.1, "-",
-            "Share of each joint's range in which force is full, around its middle."),
+            "Share of each joint's range, around its middle, in which the motors give their full "
+            "force."),
   };
 }();
 // Clamps to the allowed range; NaN becomes the default.

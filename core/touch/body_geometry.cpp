@@ -232,7 +232,7 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   btManifoldArray all;
   p.algorithm->getAllContactManifolds(all);
   if (all.size() != 1)
-    throw std::logic_error("no room was made for the contacts of a pair of shapes");
+    throw std::logic_error("no memory was reserved for the contacts of a pair of shapes");
   p.manifold = all[0];
   p.manifold->clearManifold();
   const double near = std::min(CollisionSolid::kNear, 0.1 * std::min(a.least, b.least));

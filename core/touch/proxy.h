@@ -37,6 +37,7 @@ class Proxy {
   void place(const Vec<N>& x, const Vec<N>& v, double ratio);
   // A changed ratio keeps the velocity.
   void set_ratio(double ratio);
+  double ratio() const { return ratio_; }
 
   // Computes M, C and v at the present position. After a step it comes before all other calls but
   // x(), v() and the results of the last tick.

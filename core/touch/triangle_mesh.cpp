@@ -185,9 +185,13 @@ struct TriangleMesh::Tree {
 std::string MeshHealth::text() const {
   std::string out;
   const auto add = [&](const std::string& part) { out += (out.empty() ? "" : ", ") + part; };
-  if (degenerate > 0) add(counted(degenerate, "triangle") + " of zero area ignored");
-  if (odd_edges > 0) add(counted(odd_edges, "edge") + " where the surface branches or turns over");
-  if (open_edges > 0) add(counted(open_edges, "open edge") + ": touched as a sheet, on both sides");
+  if (degenerate > 0) add(counted(degenerate, "triangle") + " with zero area ignored");
+  if (odd_edges > 0)
+    add(counted(odd_edges, "edge") +
+        " where the surface branches or its inside and outside change places");
+  if (open_edges > 0)
+    add(counted(open_edges, "open edge") +
+        ": the mesh is touched like a thin sheet, on both sides");
   return out;
 }
 
@@ -234,7 +238,8 @@ TriangleMesh::~TriangleMesh() = default;
 
 void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
                                   std::span<const std::uint32_t> indices) {
-  if (indices.size() % 3 != 0) throw std::invalid_argument("indices do not make whole triangles");
+  if (indices.size() % 3 != 0)
+    throw std::invalid_argument("the number of indices is not a multiple of 3");
   if (indices.size() / 3 > kMostTriangles) {
     throw std::invalid_argument(std::to_string(indices.size() / 3) + " triangles; at most " +
                                 std::to_string(kMostTriangles));
@@ -246,7 +251,8 @@ void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
                                   counted(vertices.size(), "vertice"));
     }
     if (!vertices[i].allFinite() || vertices[i].cwiseAbs().maxCoeff() > 1e9f) {
-      throw std::invalid_argument("a corner that is not finite, or beyond 1e9");
+      throw std::invalid_argument(
+          "a corner has a coordinate that is not finite or is larger than 1e9");
     }
     box.extend(vertices[i].cast<double>());
   }

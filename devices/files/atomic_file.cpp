@@ -220,8 +220,8 @@ void check_place(const fs::path& out, bool force) {
     throw FileError(fmt::format("{}: is a directory", out.string()));
   }
   if (fs::exists(out, error) && !fs::is_regular_file(out, error)) {
-    throw FileError(fmt::format(
-        "{}: is not an ordinary file, and must not be replaced by an ordinary file", out.string()));
+    throw FileError(fmt::format("{}: is not an ordinary file; Limpid replaces only ordinary files",
+                                out.string()));
   }
   if (!force && fs::exists(out, error)) {
     throw FileError(fmt::format("{}: exists; --force overwrites it", out.string()));

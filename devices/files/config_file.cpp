@@ -122,8 +122,8 @@ void apply_setting(Parameters& p, std::string_view setting) {
   const std::string value(equals == std::string_view::npos ? ""
                                                            : trimmed(setting.substr(equals + 1)));
   if (key.empty() || value.empty()) {
-    throw ParameterError(
-        fmt::format("'{}': not a setting; needed: key=value, as coupling.eta=0.6", setting));
+    throw ParameterError(fmt::format(
+        "'{}': not a setting; needed: key=value, for example coupling.eta=0.6", setting));
   }
   set(p, key, parse_value(value));
 }

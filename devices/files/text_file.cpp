@@ -26,7 +26,7 @@ std::string read_text(const std::filesystem::path& file, std::size_t limit) {
   const auto size = std::filesystem::file_size(file);
   if (size > limit) {
     throw FileError(
-        fmt::format("{}: {} bytes long, at most {} are read", file.string(), size, limit));
+        fmt::format("{}: has {} bytes; allowed: at most {}", file.string(), size, limit));
   }
   std::string text(size, '\0');
   in.read(text.data(), static_cast<std::streamsize>(size));

@@ -161,7 +161,7 @@ std::vector<std::string> TomlTable::texts(const char* key) const {
   const toml::node* node = find(key);
   if (node == nullptr) return all;
   const toml::array* list = node->as_array();
-  const char* allowed = "a list of text, as [\"one\", \"two\"]";
+  const char* allowed = "a list of texts, for example [\"one\", \"two\"]";
   if (list == nullptr) refuse(key, allowed);
   for (const toml::node& each : *list) {
     if (!each.is_string()) refuse(key, allowed);

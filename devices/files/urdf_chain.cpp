@@ -174,15 +174,15 @@ class Chain {
     for (const auto& [name, joint] : model_.joints_) {
       if (!moves(*joint)) continue;
       places_.refuse(
-          fmt::format("no joint moves the link '{}'; other links move: name the link that the hand "
-                      "holds with --tip LINK, such as '{}'",
+          fmt::format("no joint moves the link '{}', but other links move; use --tip LINK to "
+                      "choose the link that the hand holds, for example '{}'",
                       way_.empty() ? model_.getRoot()->name : way_.back()->child_link_name,
                       joint->child_link_name));
     }
-    places_.refuse(fmt::format(
-        "no joint that moves; needed: 1 to {}, revolute, continuous or prismatic, with limits that "
-        "leave room (lower below upper)",
-        kMaxDof));
+    places_.refuse(
+        fmt::format("no joint moves; needed: 1 to {} joints that are revolute, continuous or "
+                    "prismatic, with limits that allow motion (lower below upper)",
+                    kMaxDof));
   }
 
   // Adds a link and all that it carries, without what is behind joint `on`.
@@ -249,10 +249,9 @@ class Chain {
   // Passes joint i of the way. Returns the frame of its child in the frame of the moving link.
   Pose pass(const urdf::Joint& joint, const Pose& here, std::size_t i) {
     if (joint.mimic && i < last_moving_) {
-      places_.refuse_joint(
-          joint.name,
-          "mimics another joint inside the chain; not supported: name a tip before "
-          "it (--tip LINK)");
+      places_.refuse_joint(joint.name,
+                           "mimics another joint inside the chain; this is not supported: choose a "
+                           "tip before this joint (--tip LINK)");
     }
     if (!moves(joint)) return held(joint, here);
     const Pose origin = origin_of(joint, here);
@@ -264,7 +263,7 @@ class Chain {
     }
     if (arm_.dof() == kMaxDof) {
       places_.refuse_joint(joint.name,
-                           fmt::format("one joint too many; at most {} joints that move", kMaxDof));
+                           fmt::format("too many joints; at most {} joints may move", kMaxDof));
     }
     arm_.joints.push_back(moving_joint(joint, origin));
     Link link;
@@ -323,7 +322,8 @@ class Chain {
     constexpr std::size_t kNamed = 6;
     const std::size_t named = std::min(held_.size(), kNamed);
     places_.warn(fmt::format(
-        "held still, because they are not in the chain to '{}': {}{}", arm_.tip_link,
+        "joints that are held still, because they are not in the chain to '{}': {}{}",
+        arm_.tip_link,
         fmt::join(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
         held_.size() > named ? fmt::format(" and {} more joints", held_.size() - named) : ""));
   }
@@ -346,10 +346,10 @@ void warn_of_immobile(const ArmDescription& arm, UrdfPlaces& places) {
   places.warn_link(
       arm.tip_link,
       fmt::format("the tip lies on the axis of '{}', so no joint moves the tip: a hand at the tip "
-                  "cannot move the arm; name a link beside the axis with --tip LINK{}",
+                  "cannot move the arm; use --tip LINK to choose a link that is not on the axis{}",
                   arm.joints.back().name,
-                  other != nullptr ? fmt::format(" ('{}' is one)", other->name)
-                                   : ", or fix one there in the file"));
+                  other != nullptr ? fmt::format(" (for example '{}')", other->name)
+                                   : ", or add such a link to the file with a fixed joint"));
 }
 
 void shorten_to_mass(ArmDescription& arm, UrdfPlaces& places) {

@@ -77,7 +77,7 @@ void parse_xml(TiXmlDocument& document, const std::string& text, UrdfPlaces& pla
   }
   if (places.link_lines.size() > kMostLinks) {
     places.refuse(
-        fmt::format("{} links; at most {} are read", places.link_lines.size(), kMostLinks));
+        fmt::format("{} links; allowed: at most {}", places.link_lines.size(), kMostLinks));
   }
 }
 

@@ -20,10 +20,10 @@ enum class Xacro : std::uint8_t { refuse, expand };
 struct XacroToExpand : FileError {
   explicit XacroToExpand(std::filesystem::path of)
       : FileError(of.string() +
-                  ": is a xacro file: expanding it runs program xacro, which can run code in the "
-                  "file. Only what is named on the command line is expanded without a question; "
-                  "expand it first (xacro FILE > arm.urdf), or call limpid sweep with "
-                  "--allow-xacro"),
+                  ": is a xacro file: expanding it runs the program xacro, which can run code in "
+                  "the file. Only files that are named on the command line are expanded without a "
+                  "question. Expand the file first (xacro FILE > arm.urdf), or call limpid sweep "
+                  "with --allow-xacro"),
         file(std::move(of)) {}
 
   std::filesystem::path file;

@@ -28,9 +28,9 @@ void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
   for (const auto& [name, joint] : model.joints_) {
     const auto [other, first] = carrier.emplace(joint->child_link_name, name);
     if (first) continue;
-    places.refuse_link(
-        joint->child_link_name,
-        fmt::format("hangs on two joints, '{}' and '{}'; needed: one", other->second, name));
+    places.refuse_link(joint->child_link_name,
+                       fmt::format("is the child of two joints, '{}' and '{}'; needed: one joint",
+                                   other->second, name));
   }
   for (const auto& [name, link] : model.links_) {
     int depth = 0;
@@ -79,12 +79,11 @@ class Search {
       all += fmt::format("{}'{}' ({})", all.empty() ? "" : ", ", tip.link, tip.joints);
     }
     try {
-      places_.refuse_link(
-          link.name,
-          fmt::format(
-              "the arm branches here, to '{}' and '{}'; name the tip with --tip LINK, and the "
-              "other branches are held still; tips, with the number of joints to each tip: {}",
-              one, other, all));
+      places_.refuse_link(link.name,
+                          fmt::format("the arm branches here, to '{}' and '{}'; use --tip LINK to "
+                                      "choose the tip. The other branches are then held still. "
+                                      "Possible tips, with the number of joints to each tip: {}",
+                                      one, other, all));
     } catch (const FileError& error) {
       throw TipsToChoose(error, places_.where, std::move(tips));
     }
@@ -200,7 +199,8 @@ Way named(const urdf::ModelInterface& model, const std::string& tip, const UrdfP
       if (each->child_joints.empty() && some.size() < 200)
         some += (some.empty() ? "" : ", ") + name;
     }
-    places.refuse(fmt::format("tip '{}': no such link; links at an end: {}", tip, some));
+    places.refuse(
+        fmt::format("tip '{}': there is no such link; links at the end of a chain: {}", tip, some));
   }
   Way way;
   for (; link->parent_joint; link = model.getLink(link->parent_joint->parent_link_name)) {

@@ -126,7 +126,8 @@ fs::path find_program(const std::string& name) {
 struct Pipe {
   std::array<int, 2> ends{-1, -1};
   Pipe() {
-    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw FileError("xacro: no pipe to it");
+    if (pipe2(ends.data(), O_CLOEXEC) != 0)
+      throw FileError("xacro: no connection (pipe) to the program xacro can be made");
   }
   ~Pipe() {
     for (const int end : ends) {
@@ -188,7 +189,7 @@ std::string expanded(const fs::path& program, const fs::path& file) {
   waitpid(child, &status, 0);
   if (whole && WIFEXITED(status) && WEXITSTATUS(status) == 0) return said[0];
   throw FileError(fmt::format("{}: xacro: {}", file.string(),
-                              whole ? last_line(said[1]) : "did not come to an end"));
+                              whole ? last_line(said[1]) : "the program did not end"));
 }
 
 }  // namespace
@@ -196,7 +197,7 @@ std::string expanded(const fs::path& program, const fs::path& file) {
 void check_xml(const std::string& text, const std::string& where) {
   if (text.size() > kLongestXml) {
     throw FileError(
-        fmt::format("{}: {} bytes long, at most {} are read", where, text.size(), kLongestXml));
+        fmt::format("{}: has {} bytes; allowed: at most {}", where, text.size(), kLongestXml));
   }
   Guard(text, where).look_through();
 }
@@ -207,10 +208,11 @@ std::string urdf_text(const fs::path& file, Xacro xacro) {
   if (xacro == Xacro::refuse) throw XacroToExpand(file);
   const fs::path program = find_program("xacro");
   if (!program.empty()) return expanded(program, file);
-  throw FileError(fmt::format(
-      "{}: written in xacro, and there is no program xacro to expand it; install it (it comes with "
-      "ROS, or `pip install xacro`), or expand the file elsewhere: xacro {} > arm.urdf",
-      file.string(), file.filename().string()));
+  throw FileError(
+      fmt::format("{}: is written in xacro, and the program xacro, which expands such files, is "
+                  "not installed; install xacro (it comes with ROS, or `pip install xacro`), or "
+                  "expand the file on another computer: xacro {} > arm.urdf",
+                  file.string(), file.filename().string()));
 }
 
 }  // namespace limpid

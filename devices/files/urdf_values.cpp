@@ -174,7 +174,8 @@ class Own {
     if (text == nullptr) return std::nullopt;
     const auto found = numbers_in<3>(text);
     if (!found || found->norm() > kMostGravity) {
-      refuse(fmt::format("gravity \"{}\"; needed: X Y Z in m/s^2, {} at most", text, kMostGravity));
+      refuse(fmt::format("gravity \"{}\"; needed: X Y Z in m/s^2, together at most {}", text,
+                         kMostGravity));
     }
     return Vec3(*found);
   }
@@ -203,7 +204,8 @@ void read_warmth(const TiXmlElement& element, const UrdfPlaces& places, ArmDescr
   const auto continuous =
       own.number("continuous", kLeastContinuous * effort, effort, slides ? "N" : "N m");
   const auto time = own.number("time", kShortestWarming, kLongestWarming, "s");
-  if (!continuous || !time) own.refuse("has no continuous or no time; needed: both");
+  if (!continuous || !time)
+    own.refuse("has no attribute continuous or no attribute time; needed: both");
   joint->continuous = *continuous * unit;
   joint->warming = *time;
 }
@@ -266,13 +268,13 @@ std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places) {
     if (each->ValueStr() == "joint") out.InsertEndChild(joint_of(*each, guessed));
   }
   if (!guessed.unlimited.empty()) {
-    places.warn(
-        fmt::format("limits of zeros: {}; taken as no limits", fmt::join(guessed.unlimited, ", ")));
+    places.warn(fmt::format("both limits are zero: {}; Limpid assumes no limits",
+                            fmt::join(guessed.unlimited, ", ")));
   }
   if (!guessed.fixed.empty()) {
     places.warn(
-        fmt::format("slides without a <limit>: {}; these joints are held still; a <limit> lets "
-                    "these joints move",
+        fmt::format("joints that slide without a <limit>: {}; these joints are held still; with a "
+                    "<limit> they can move",
                     fmt::join(guessed.fixed, ", ")));
   }
   TiXmlDocument document;
@@ -303,8 +305,8 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
   for (const Link& link : arm.links) check_body(link, places);
   if (const Link all = outer(arm, 0); !(all.mass > 0) && !(all.inertia.norm() > 0)) {
     places.refuse(
-        "no link that moves has an <inertial>; needed: mass and inertia of each, as from CAD or a "
-        "data sheet");
+        "no link that moves has an <inertial>; needed: mass and inertia of each link, for example "
+        "from CAD or a data sheet");
   }
   std::vector<std::string> guessed;
   for (std::size_t i = arm.links.size(); i-- > 0;) {
@@ -316,11 +318,10 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
     if (!(most > 0 && std::isfinite(most))) {
       places.refuse_link(
           link.name,
-          fmt::format(
-              "inertia {:.3g} kg m^2 about joint '{}', and no link behind it has any; needed: more "
-              "than 0 (its <inertial> or that of links fixed to it), or a tip before it "
-              "(--tip LINK)",
-              resistance(joint, link), joint.name));
+          fmt::format("inertia {:.3g} kg m^2 about joint '{}', and no link after this joint has an "
+                      "inertia; needed: more than 0 (in the <inertial> of this link or of links "
+                      "fixed to it), or a tip before this joint (--tip LINK)",
+                      resistance(joint, link), joint.name));
     }
     const double least = kGuess * most;
     if (slides(joint)) {
@@ -333,9 +334,9 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
   if (guessed.empty()) return;
   std::ranges::reverse(guessed);
   places.warn(
-      fmt::format("links without inertia, or with hardly any: {}; taken as a thousandth of the "
-                  "inertia that hangs on each link [kg m^2]; write the true inertia, in kg and "
-                  "kg m^2, as <inertial>",
+      fmt::format("links without inertia, or with nearly none: {}; Limpid assumes a thousandth of "
+                  "the inertia that each link carries [kg m^2]; write the true mass and inertia, "
+                  "in kg and kg m^2, in <inertial>",
                   list(guessed)));
 }
 
@@ -359,7 +360,7 @@ void complete_efforts(ArmDescription& arm, UrdfPlaces& places) {
   if (guessed.empty()) return;
   std::ranges::reverse(guessed);
   places.warn(fmt::format(
-      "no effort in <limit>: {}; taken as twice the torque that holds the stretched arm",
+      "no effort in <limit>: {}; Limpid assumes twice the torque that holds the stretched arm",
       list(guessed)));
 }
 
@@ -378,8 +379,7 @@ void warn_of_unknown(const TiXmlElement& own, const std::vector<std::string>& kn
   const auto warn = [&](const char* kind, const std::string& name) {
     if (std::ranges::find(known, name) != known.end()) return;
     places.warn(
-        fmt::format("line {}: <{}> has {} '{}', which Limpid does not know and leaves out; "
-                    "known: {}",
+        fmt::format("line {}: <{}> has {} '{}', which Limpid does not know and ignores; known: {}",
                     own.Row(), own.ValueStr(), kind, name, fmt::join(known, ", ")));
   };
   for (auto* each = own.FirstAttribute(); each != nullptr; each = each->Next())

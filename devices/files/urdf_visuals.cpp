@@ -146,7 +146,7 @@ class Reader {
       try {
         all.push_back(read(*each));
       } catch (const NotShown& e) {
-        places_.warn_link(name, fmt::format("visual: {}; a plain shape stands for it", e.why));
+        places_.warn_link(name, fmt::format("visual: {}; a plain shape is shown instead", e.why));
         Visual plain;
         plain.shape = Visual::Shape::stand_in;
         all.push_back(plain);
@@ -193,10 +193,9 @@ class Reader {
     out.mesh = meshes_.find(name).string();
     if (!out.mesh.empty()) return;
     const bool package = std::string_view(name).find("://") != std::string_view::npos;
-    throw NotShown{fmt::format("mesh '{}' is not found{}", name,
-                               package ? " beside the URDF, in ROS_PACKAGE_PATH or in "
-                                         "AMENT_PREFIX_PATH"
-                                       : "")};
+    throw NotShown{fmt::format(
+        "mesh '{}' is not found{}", name,
+        package ? " near the URDF file, in ROS_PACKAGE_PATH or in AMENT_PREFIX_PATH" : "")};
   }
 
   std::optional<Eigen::Vector4f> colour_of(const TiXmlElement& visual) const {

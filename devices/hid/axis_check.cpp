@@ -56,8 +56,7 @@ const char* what_to_do(AxisStage stage) {
   switch (stage) {
     case AxisStage::resting:
       return "Bring the device near its middle and let go, or hold the device lightly.";
-    case AxisStage::pushing:
-      return "The motor pushes the axis a little. Do not hold against the motion.";
+    case AxisStage::pushing: return "The motor pushes the axis a little. Do not resist the motion.";
     case AxisStage::done: return "";
   }
   return "";

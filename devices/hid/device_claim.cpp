@@ -44,7 +44,8 @@ std::string file_name(const std::string& key) {
     name += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   if (name.size() > kMostName) {
-    throw HidError(fmt::format("the device's place has too long a name to be claimed: {}", key));
+    throw HidError(fmt::format(
+        "the device cannot be reserved, because the name of its connection is too long: {}", key));
   }
   return name + ".lock";
 }
@@ -65,9 +66,8 @@ int open_file(const fs::path& path) {
   }
   struct stat is {};
   if (file >= 0 && fstat(file, &is) == 0 && S_ISREG(is.st_mode) && is.st_nlink <= 1) return file;
-  const std::string why = file >= 0 || errno == ELOOP
-                              ? "this is not a plain file, but must be a plain file"
-                              : std::strerror(errno);
+  const std::string why =
+      file >= 0 || errno == ELOOP ? "this must be a plain file, but is not" : std::strerror(errno);
   if (file >= 0) close(file);
   throw HidError(fmt::format("{}: {}, so nobody can tell whether another program uses the device",
                              path.string(), why));
@@ -138,8 +138,8 @@ fs::path claim_folder(std::span<const fs::path> among) {
   std::string names;
   for (const fs::path& folder : among) names += (names.empty() ? "" : " or ") + folder.string();
   throw HidError(
-      fmt::format("no folder to note which program uses a device; needed: {}, in which every user "
-                  "may make files",
+      fmt::format("there is no folder for files that say which program uses a device; needed: {}, "
+                  "where every user may create files",
                   names));
 }
 

@@ -79,7 +79,7 @@ std::string what_is_missing(const std::string& path, const fs::path& udev_rule) 
   if (access(path.c_str(), F_OK) != 0) return fmt::format("{} does not exist", path);
   return fmt::format(
       "no permission for {}: run 'sudo cp {} /etc/udev/rules.d/ && sudo udevadm control --reload' "
-      "and plug it in again",
+      "and plug the device in again",
       path, udev_rule.string());
 }
 
@@ -103,7 +103,7 @@ constexpr std::string_view kKey = "inverse3";
 
 constexpr DeviceKind kInverseKind{.key = "inverse3",
                                   .name = "Haply Inverse3",
-                                  .use = "its tip in three directions, pushes",
+                                  .use = "moves its tip in three directions; gives force",
                                   .pushes = true,
                                   .arm = "inverse3.urdf",
                                   .service = true};
@@ -293,9 +293,10 @@ std::optional<InverseName> inverse_name(const std::string& words) {
   if (!rest.empty() && rest[0] != ':' && rest[0] != '@') return std::nullopt;  // e.g. a file
   InverseName name;
   const auto refuse = [&] [[noreturn]] {
-    throw HidError(fmt::format(
-        "\"{}\" names no device; allowed: inverse3[:ID][@HOST[:PORT]], a port from 1 to 65535",
-        words));
+    throw HidError(
+        fmt::format("\"{}\" is not the name of a device; allowed: inverse3[:ID][@HOST[:PORT]], "
+                    "with a port from 1 to 65535",
+                    words));
   };
   const auto place = rest.find('@');
   if (rest.starts_with(":")) {
@@ -318,7 +319,7 @@ std::vector<FoundDevice> list_inverse_devices(const std::optional<InverseName>& 
   std::vector<FoundDevice> found;
   for (const ServiceAddress& place : places) {
     const bool here = wanted && wanted->address == place;
-    std::string missing = here && wanted->id.empty() ? "the service has no Inverse3"
+    std::string missing = here && wanted->id.empty() ? "the service reports no Inverse3"
                                                      : "the service does not have this device";
     std::vector<std::string> ids;
     try {

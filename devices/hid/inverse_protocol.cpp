@@ -96,8 +96,8 @@ std::string other_frame(const json& config, const json& workspace) {
     return fmt::format("the preset {}; needed: defaults or arm_front", preset);
   }
   if (moved(at(config, "mount")) || moved(workspace)) {
-    return "a mount or a workspace that is moved, turned or scaled; needed: not moved, not turned, "
-           "not scaled";
+    return "a mount or a workspace that is shifted, rotated or scaled; needed: no shift, no "
+           "rotation, no scale";
   }
   return {};
 }

@@ -29,12 +29,13 @@ const ReportField* find_position(const ReportDescriptor& descriptor, int axis) {
 
 void require_within(double value, double most, const char* name) {
   if (value > 0 && value <= most) return;
-  throw HidError(fmt::format("PID joystick: {} is {}; above 0, at most {}", name, value, most));
+  throw HidError(fmt::format("force-feedback joystick: {} is {}; needed: above 0, at most {}", name,
+                             value, most));
 }
 
 void send_or_throw(HidTransport& transport, const std::optional<Report>& report) {
   if (report && !transport.write(*report)) {
-    throw HidError("the PID device does not accept its reports");
+    throw HidError("the force-feedback joystick does not accept its reports");
   }
 }
 
@@ -72,7 +73,7 @@ PidJoystick::PidJoystick(const ReportDescriptor& descriptor, const PidSettings& 
     const auto steps = static_cast<double>(position->logical_max - position->logical_min);
     traits_.resolution.push_back(2 * settings.range / steps);
   }
-  if (axes_.empty()) throw HidError("the PID device has no axis that it can push");
+  if (axes_.empty()) throw HidError("the force-feedback joystick has no axis with a force");
   for (const Usage usage : {kDevicePaused, kActuatorsEnabled, kSafetySwitch, kActuatorPower}) {
     const ReportField* field = descriptor.find(ReportKind::input, usage, kState);
     if (field && !field->array) state_.push_back({*field, usage});
@@ -109,7 +110,7 @@ void PidJoystick::open(HidTransport& transport) {
 
 int PidJoystick::create_effect(HidTransport& transport) const {
   if (!transport.set_feature(reports_.create_constant_force())) {
-    throw HidError("the PID device does not accept a new effect");
+    throw HidError("the force-feedback joystick does not accept a new effect");
   }
   Report load = reports_.block_load();
   const std::uint8_t id = load[0];
@@ -122,7 +123,7 @@ int PidJoystick::create_effect(HidTransport& transport) const {
     }
     std::this_thread::sleep_for(kLoadPause);
   }
-  throw HidError("the PID device does not say where its new effect is");
+  throw HidError("the force-feedback joystick does not report the index of its new effect");
 }
 
 // Makes redundant reports: whichever of them a device understands, its motors end without force.

@@ -30,7 +30,7 @@ constexpr double kSign[] = {-1, 1};
 
 void set(Report& report, const ReportField& field, std::int64_t value, std::uint32_t index = 0) {
   if (put_field(report, field, value, index)) return;
-  throw HidError(fmt::format("report {} has no room for {}", field.report_id, value));
+  throw HidError(fmt::format("report {} cannot contain the value {}", field.report_id, value));
 }
 
 // Chooses `usage` in a field that lists it, or switches on a field of this usage.
@@ -58,7 +58,7 @@ std::int64_t to_ticks(const ReportField& field, double seconds) {
   const auto span = static_cast<double>(field.physical_max - field.physical_min);
   const auto steps = static_cast<double>(field.logical_max - field.logical_min);
   if (span <= 0 || steps <= 0 || field.logical_max < 1) {
-    throw HidError("the PID device's effect duration has no range");
+    throw HidError("the force-feedback joystick's effect duration has no range");
   }
   const double ticks = static_cast<double>(field.logical_min) +
                        (physical - static_cast<double>(field.physical_min)) * steps / span;
@@ -69,10 +69,11 @@ std::int64_t to_ticks(const ReportField& field, double seconds) {
                         (taken - static_cast<double>(field.logical_min)) * span / steps) *
                        std::pow(10, exponent);
   if (lasts > kMostTimes * seconds) {
-    throw HidError(fmt::format(
-        "the PID device's shortest effect lasts {:.3g} ms; needed: at most {:.3g} ms, so that a "
-        "force that nobody renews ends by itself",
-        1e3 * lasts, 1e3 * kMostTimes * seconds));
+    throw HidError(
+        fmt::format("the force-feedback joystick's shortest effect lasts {:.3g} ms; needed: at "
+                    "most {:.3g} ms, so that a "
+                    "force that nobody renews ends by itself",
+                    1e3 * lasts, 1e3 * kMostTimes * seconds));
   }
   return static_cast<std::int64_t>(taken);
 }
@@ -112,8 +113,9 @@ double full_force(const ReportField& magnitude) {
 PidReports::PidReports(ReportDescriptor descriptor) : descriptor_(std::move(descriptor)) {
   if (!descriptor_.find(kFeature, kTypeConstantForce, kCreateNewEffect)) {
     throw HidError(
-        "the PID device has no Create New Effect report with constant force: it wants the computer "
-        "to manage its memory, or cannot push so; not supported");
+        "the force-feedback joystick has no Create New Effect report with constant force: the "
+        "computer must manage its memory, or it cannot give a constant force; this is not "
+        "supported");
   }
   need(kFeature, kBlockIndex, kBlockLoad, "PID Block Load");
   need(kFeature, kLoadSuccess, kBlockLoad, "Block Load Status");
@@ -127,7 +129,9 @@ PidReports::PidReports(ReportDescriptor descriptor) : descriptor_(std::move(desc
   need(kOut, kStopAllEffects, kDeviceControl, "Stop All Effects");
   magnitude_ = need(kOut, kMagnitude, kSetConstantForce, "Magnitude");
   if (magnitude_.logical_min >= 0 || magnitude_.logical_max <= 0) {
-    throw HidError("the PID device's constant force has one sign only; not supported");
+    throw HidError(
+        "the constant force of the force-feedback joystick has only one direction; this is not "
+        "supported");
   }
   Report trial = blank(magnitude_);
   set(trial, magnitude_, std::llround(full_force(magnitude_)));
@@ -138,7 +142,7 @@ PidReports::PidReports(ReportDescriptor descriptor) : descriptor_(std::move(desc
 const ReportField& PidReports::need(ReportKind kind, Usage usage, Usage within,
                                     const char* name) const {
   const ReportField* field = descriptor_.find(kind, usage, within);
-  if (!field) throw HidError(fmt::format("the PID device does not describe {}", name));
+  if (!field) throw HidError(fmt::format("the force-feedback joystick does not describe {}", name));
   return *field;
 }
 
@@ -178,11 +182,11 @@ Report PidReports::block_load() const {
 std::optional<int> PidReports::created(std::span<const std::uint8_t> block_load) const {
   const ReportField* full = descriptor_.find(kFeature, kLoadFull, kBlockLoad);
   if (full && chosen(block_load, *full, kLoadFull)) {
-    throw HidError("the PID device has no room for another effect");
+    throw HidError("the force-feedback joystick has no memory left for another effect");
   }
   const ReportField* error = descriptor_.find(kFeature, kLoadError, kBlockLoad);
   if (error && chosen(block_load, *error, kLoadError)) {
-    throw HidError("the PID device cannot make an effect of constant force");
+    throw HidError("the force-feedback joystick cannot make an effect of constant force");
   }
   const auto& status = need(kFeature, kLoadSuccess, kBlockLoad, "Block Load Status");
   if (!chosen(block_load, status, kLoadSuccess)) return std::nullopt;
@@ -214,7 +218,7 @@ Report PidReports::set_effect(int block, int axis, double duration) const {
 void PidReports::set_direction(Report& report, int axis) const {
   if (!by_angle_) {
     if (!names_axis(axis)) {
-      throw HidError("the PID device does not describe a direction of effects");
+      throw HidError("the force-feedback joystick does not describe a direction of effects");
     }
     set(report, *descriptor_.find(kOut, axis_usage(axis), kAxesEnable), 1);
     return;

@@ -109,7 +109,7 @@ DeviceTraits read_traits(Payload body) {
 void read_joint_of_any_kind(Payload body, std::size_t joint, DeviceTraits& traits) {
   const std::uint8_t kind = body[Raw2Feature::kinds + joint];
   check(kind <= 1, fmt::format("joint {} is of kind {}", joint + 1, kind),
-        "0 (turns) and 1 (slides) are allowed");
+        "allowed: 0 (joint rotates) and 1 (joint slides)");
   const bool slides = kind == 1;
   const double unit = slides ? kSlideUnit : 1, farthest = slides ? kFarthestSlide : kFarthestTurn;
   const char* const angle = slides ? "m" : "rad";
@@ -129,8 +129,8 @@ void read_joint_of_any_kind(Payload body, std::size_t joint, DeviceTraits& trait
         "it must be 0 (no motor) or more");
   const double speed = number_at(body, Raw2Feature::speed, joint);
   check(std::isfinite(speed) && speed >= 0,
-        fmt::format("joint {} is as fast as {} {}/s", joint + 1, speed, angle),
-        "it must be 0 (not said) or more");
+        fmt::format("the largest speed of joint {} is {} {}/s", joint + 1, speed, angle),
+        "it must be 0 (unknown) or more");
   traits.slides.push_back(slides);
   traits.lower.push_back(lower / unit);
   traits.upper.push_back(upper / unit);
@@ -174,7 +174,7 @@ void RawProtocol::open(HidTransport& transport) {
     if (more) layout_ = kRaw2;
   }
   if (!answered) {
-    throw HidError("the device does not answer when asked what it is (feature report)");
+    throw HidError("the device does not send its description when asked (feature report)");
   }
   if (!raw_undamaged(body.first(layout_.feature), layout_.version, layout_.feature)) {
     throw HidError("the device's feature report has a wrong magic, version or CRC");

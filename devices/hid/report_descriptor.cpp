@@ -11,7 +11,7 @@ namespace limpid {
 namespace {
 
 constexpr std::uint8_t kLongItem = 0xFE;
-constexpr const char* kCutOff = "the item is cut off";
+constexpr const char* kCutOff = "the end of the item is missing";
 
 constexpr std::size_t kMaxDescriptor = 4096;  // as in the kernel
 constexpr std::size_t kMaxFields = 2048;
@@ -132,7 +132,8 @@ class Parser {
 
   void take_report_id(const ReportItem& item) {
     if (item.value == 0 || item.value > 255) refuse(item, "a report's id is 1 to 255");
-    if (!descriptor_.numbered && any_report_) refuse(item, "reports with and without an id");
+    if (!descriptor_.numbered && any_report_)
+      refuse(item, "some reports have an id, others have none");
     descriptor_.numbered = true;
     globals_.report_id = static_cast<std::uint8_t>(item.value);
   }
@@ -322,8 +323,8 @@ const ReportField* ReportDescriptor::find(ReportKind kind, Usage usage, Usage wi
 
 ReportDescriptor parse_report_descriptor(std::span<const std::uint8_t> bytes) {
   if (bytes.size() > kMaxDescriptor) {
-    throw HidError(
-        fmt::format("report descriptor: {} bytes, {} at most", bytes.size(), kMaxDescriptor));
+    throw HidError(fmt::format("report descriptor: {} bytes; allowed: at most {}", bytes.size(),
+                               kMaxDescriptor));
   }
   return Parser(bytes).parse();
 }

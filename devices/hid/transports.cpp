@@ -136,7 +136,7 @@ class ProgramTransport final : public SocketTransport {
       throw HidError(std::string(first.begin() + 2, first.end()));
     }
     if (!came || first.empty()) {
-      throw HidError("the program that drives the device does not answer");
+      throw HidError("the program that controls the device does not answer");
     }
     described_ = true;
   }

@@ -30,12 +30,12 @@ using nlohmann::json;
 constexpr std::chrono::seconds kLongestList{15};
 constexpr std::size_t kMostText = 64 * 1024;
 
-#define KIND(key_, name_, maker, ...)                      \
-  DeviceKind{.key = #key_,                                 \
-             .name = name_ " device",                      \
-             .use = "its tip in three directions, pushes", \
-             .pushes = true,                               \
-             .arm = #key_ ".urdf",                         \
+#define KIND(key_, name_, maker, ...)                                 \
+  DeviceKind{.key = #key_,                                            \
+             .name = name_ " device",                                 \
+             .use = "moves its tip in three directions; gives force", \
+             .pushes = true,                                          \
+             .arm = #key_ ".urdf",                                    \
              .service = true},
 constexpr std::array kKinds{LIMPID_VENDORS(KIND)};
 #undef KIND
@@ -195,7 +195,8 @@ std::unique_ptr<HidTransport> open_vendor(const std::string& back_end, const std
       given);
   if (!child->started()) {
     ::close(ends[0]);
-    throw HidError(fmt::format("the program {}, which drives it, cannot be started", program));
+    throw HidError(
+        fmt::format("the program {}, which controls the device, cannot be started", program));
   }
   return open_socket_of(std::move(child), ends[0], kRefusal);
 }

@@ -32,12 +32,12 @@ double envelope(double t, double length) {
 
 const char* explain(ExcitationEnd end) {
   switch (end) {
-    case ExcitationEnd::running: return "under way";
+    case ExcitationEnd::running: return "running";
     case ExcitationEnd::complete: return "complete";
     case ExcitationEnd::cancelled: return "cancelled";
     case ExcitationEnd::not_well: return "the device no longer answered correctly";
-    case ExcitationEnd::let_go: return "the device's hand switch opened";
-    case ExcitationEnd::limit: return "a limit of safety was reached";
+    case ExcitationEnd::let_go: return "the hand released the device's hand switch";
+    case ExcitationEnd::limit: return "a safety limit was reached";
     case ExcitationEnd::held: return "a joint did not follow: something holds the device";
   }
   return "";

@@ -361,15 +361,16 @@ class GripFit {
 
 // Reason why a record cannot be judged; empty if it can.
 std::string unfit(const GripRecord& record) {
-  if (!record.begun()) return "the grip was not measured";
+  if (!record.begun()) return "the stiffness of the grip was not measured";
   if (record.duration() < GripProbe::kSettle + GripProbe::kMeasured) {
-    const std::string why = record.ended_by() != ForceState::on
-                                ? fmt::format(", as force went off: {}", explain(record.ended_by()))
-                                : "";
-    return fmt::format("it ended after {:.1f} of {:.4g} s{}. Measure again", record.duration(),
-                       GripProbe::kDuration, why);
+    const std::string why =
+        record.ended_by() != ForceState::on
+            ? fmt::format(", because the force was switched off: {}", explain(record.ended_by()))
+            : "";
+    return fmt::format("the measurement ended after {:.1f} of {:.4g} s{}. Measure again",
+                       record.duration(), GripProbe::kDuration, why);
   }
-  if (record.torn()) return "the loop stood still meanwhile: measure again";
+  if (record.torn()) return "the loop stopped during the measurement: measure again";
   return {};
 }
 
@@ -377,10 +378,10 @@ std::string unfit(const GripRecord& record) {
 std::string advice(const Grip& grip, bool rubs) {
   constexpr double kStill = 0.005;  // [m]
   constexpr double kOften = 0.2;
-  std::string say = "hold on";
-  if (grip.moved > kStill) say += ", and still";
+  std::string say = "hold the device longer";
+  if (grip.moved > kStill) say += ", without moving";
   if (grip.touched > kOften) say += ", away from walls";
-  if (rubs) say += "; the device's friction hides a part of what the hand does";
+  if (rubs) say += "; the device's friction hides a part of the hand's effect";
   return say;
 }
 
@@ -391,14 +392,14 @@ std::string doubt(const Grip& grip, bool rubs) {
     return fmt::format("the hand moved {:.0f} mm: hold still", 1e3 * grip.moved);
   }
   if (grip.stiffness.value < grip.stiffness.bound) {
-    return "no hand holds the device, or a very soft one: take hold of it";
+    return "no hand holds the device, or the grip is very soft: hold the device more firmly";
   }
   const char* of = wide(grip.stiffness, 0)             ? "stiffness"
                    : wide(grip.damping, kLeastDamping) ? "damping"
                    : wide(grip.mass, kLeastMass)       ? "mass"
                                                        : nullptr;
   if (of == nullptr) return {};
-  return fmt::format("the bounds of the hand's {} are wide: {}", of, advice(grip, rubs));
+  return fmt::format("the estimate of the hand's {} is uncertain: {}", of, advice(grip, rubs));
 }
 
 // Widens the bounds by what the lines of each axis alone say otherwise, beyond their own bounds: no
@@ -497,7 +498,7 @@ Grip find_grip(const ArmDescription& arm, const Parameters& p, const GripRecord&
   const DeviceTrust trust = DeviceTrust::of(arm, record.real(), record.tick());
   const GripFit fit(device, trust);
   if (!fit.fine()) {
-    grip.unknown = "the hand's own motion hides the arm's answer: " + advice(grip, device.rubs());
+    grip.unknown = "the hand's own motion hides the arm's response: " + advice(grip, device.rubs());
     return grip;
   }
   grip.measured = true;

@@ -36,8 +36,8 @@ constexpr int kStatusEvery = 8;          // frames
 constexpr unsigned char kOn = 1, kOff = 0;
 
 constexpr const char* kOwner =
-    "the owner of the device gets it from Force Dimension: the SDK for Linux; it is looked for in "
-    "/usr/lib, /usr/local/lib and $FORCEDIM_SDK/lib";
+    "the owner of the device gets it from Force Dimension, with the SDK for Linux; Limpid looks "
+    "for it in /usr/lib, /usr/local/lib and $FORCEDIM_SDK/lib";
 
 // Functions of the libraries, by their names there. The last argument is the device.
 struct Functions {
@@ -129,7 +129,7 @@ class ForceDimension final : public VendorBackEnd {
     int which = -1;
     const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), which);
     if (error != std::errc{} || end != name.data() + name.size() || which < 0 || which > 15) {
-      throw VendorError(fmt::format("\"{}\" names no device; allowed: 0 to 15", name));
+      throw VendorError(fmt::format("\"{}\" is not the name of a device; allowed: 0 to 15", name));
     }
     const int opened = sdk_.drdOpenID(static_cast<char>(which));
     if (opened < 0) throw VendorError(fmt::format("it cannot be opened: {}", why()));
@@ -142,8 +142,8 @@ class ForceDimension final : public VendorBackEnd {
     if (model == nullptr) {
       close();
       throw VendorError(
-          fmt::format("\"{}\" is no model whose range and force are known; known are delta, omega, "
-                      "sigma, lambda and Falcon",
+          fmt::format("range and force of the model \"{}\" are not known; known models: delta, "
+                      "omega, sigma, lambda and Falcon",
                       system));
     }
     unsigned short serial = 0;
@@ -163,13 +163,13 @@ class ForceDimension final : public VendorBackEnd {
 
   std::string needs_calibration() override {
     if (sdk_.drdIsInitialized(id_)) return {};
-    return "the device must find its zero: the device then moves by itself, through its whole "
-           "range, for some seconds. Take hands and things out of the device's reach";
+    return "the device must find its zero position. To do this, it moves by itself through its "
+           "whole range for some seconds. Keep hands and things away from the device";
   }
 
   void calibrate() override {
-    demand(sdk_.drdAutoInit(id_), "the device does not find its zero");
-    if (!sdk_.drdIsInitialized(id_)) throw VendorError("the device did not find its zero");
+    demand(sdk_.drdAutoInit(id_), "the device does not find its zero position");
+    if (!sdk_.drdIsInitialized(id_)) throw VendorError("the device did not find its zero position");
   }
 
   void begin(Servo& servo) override {
@@ -177,11 +177,13 @@ class ForceDimension final : public VendorBackEnd {
     demand(sdk_.drdStop(true, id_), "the device's own control cannot be stopped");
     demand(sdk_.dhdEnableForce(kOff, id_), "its force cannot be switched off");
     demand(sdk_.dhdSetBrakes(kOff, id_), "its brakes cannot be released");
-    demand(sdk_.dhdSetGravityCompensation(kOn, id_), "the device does not carry its own weight");
+    demand(sdk_.dhdSetGravityCompensation(kOn, id_),
+           "the motors cannot be set to hold the device's own weight");
     demand(sdk_.dhdSetMaxForce(most_, id_), "its force cannot be limited");
     if (sdk_.dhdHasGripper(id_)) sdk_.dhdEmulateButton(kOn, id_);
     // Without expert mode the watchdog is refused and nothing is said.
-    demand(sdk_.dhdEnableExpertMode(), "there is no expert mode, which its watchdog needs");
+    demand(sdk_.dhdEnableExpertMode(),
+           "its expert mode, which its watchdog needs, cannot be switched on");
     demand(sdk_.dhdSetWatchdog(kWatchdog, id_), "its watchdog cannot be set");
     enabled_ = false;
     VendorBackEnd::begin(servo);
@@ -203,7 +205,8 @@ class ForceDimension final : public VendorBackEnd {
   void write(const VendorForce& force) override {
     const bool kept_off = force.enabled && withheld_ != NoForce::none;
     if (force.enabled != enabled_ && !kept_off) {
-      demand(sdk_.dhdEnableForce(force.enabled ? kOn : kOff, id_), "its force cannot be switched");
+      demand(sdk_.dhdEnableForce(force.enabled ? kOn : kOff, id_),
+             "its force cannot be switched on or off");
       enabled_ = force.enabled;
     }
     const TipVector& f = force.force;
@@ -261,7 +264,7 @@ class ForceDimension final : public VendorBackEnd {
   void look_at_simulator(const VendorOptions& options) const {
     if (!options.simulator) return;
     if (sdk_.dhdEnableSimulator == nullptr) {
-      throw VendorError("this version of the library knows no simulator");
+      throw VendorError("this version of the library has no simulator");
     }
     sdk_.dhdEnableSimulator(true);
   }

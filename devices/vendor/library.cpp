@@ -22,8 +22,8 @@ std::string not_found(const std::string& error) {
 // window copies it. tests/system/test_vendor.py holds devices/README.md to these words.
 const char* how_to_install(const std::string& library) {
   if (library.starts_with("libncurses.so.5") || library.starts_with("libtinfo.so.5")) {
-    return "Debian 12 has it in libncurses5; Debian 13 no longer does, and takes the packages of "
-           "Debian 12: 'wget "
+    return "Debian 12 has it in libncurses5. Debian 13 does not have it; install the packages of "
+           "Debian 12 there: 'wget "
            "https://deb.debian.org/debian/pool/main/n/ncurses/libtinfo5_6.4-4_amd64.deb "
            "https://deb.debian.org/debian/pool/main/n/ncurses/libncurses5_6.4-4_amd64.deb && sudo "
            "apt install ./libtinfo5_6.4-4_amd64.deb ./libncurses5_6.4-4_amd64.deb'";

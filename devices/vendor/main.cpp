@@ -176,7 +176,7 @@ void open_and_serve(const Words& words) {
   const auto found = std::ranges::find_if(
       back_ends(), [&](const BackEndEntry& entry) { return words.back_end == entry.key; });
   if (found == back_ends().end()) {
-    throw UsageError(fmt::format("\"{}\" is no back end; {}", words.back_end, kUsage));
+    throw UsageError(fmt::format("\"{}\" is not a back end; {}", words.back_end, kUsage));
   }
   hold_signals();
   ::alarm(kLongestOpen);

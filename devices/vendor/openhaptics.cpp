@@ -48,8 +48,8 @@ constexpr int kMotors = 6;
 constexpr int kReasonStays = 50;  // frames for which a reason is told, so that it is seen
 
 constexpr const char* kOwner =
-    "the owner of the device gets it from 3D Systems: OpenHaptics for Linux, and the Touch Device "
-    "Driver";
+    "the owner of the device gets it from 3D Systems, with OpenHaptics for Linux and the Touch "
+    "Device Driver";
 constexpr const char* kDefault = "Default Device";
 constexpr const char* kLibrary = "libHD.so.3.4";
 
@@ -175,10 +175,11 @@ class OpenHaptics final : public VendorBackEnd {
     }
     if (device_ == kNoDevice || !wrong.empty()) {
       if (device_ != kNoDevice) close();
-      throw VendorError(fmt::format(
-          "{}: the library cannot open it ({}); is it plugged in and switched on, may this user "
-          "read and write its port, and does the maker's own diagnostic find it?",
-          name, wrong.empty() ? "no error named" : "error " + wrong));
+      throw VendorError(
+          fmt::format("{}: the library cannot open the device ({}); check that it is plugged in "
+                      "and switched on, that this user may read and write its port, and that the "
+                      "maker's own diagnostic program finds it",
+                      name, wrong.empty() ? "no error reported" : "error " + wrong));
     }
     opened_ = true;
     hd_.hdMakeCurrentDevice(device_);

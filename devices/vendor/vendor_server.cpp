@@ -141,7 +141,7 @@ class Server {
   // device, whose own watchdog has to do the rest.
   void end_if_it_hangs() {
     if (monotonic_now() - std::max(servo_.last_frame(), began_) <= Servo::kHang) return;
-    std::fputs("limpid-vendor: the maker's library does not return; ends\n", stderr);
+    std::fputs("limpid-vendor: the maker's library does not return; limpid-vendor ends\n", stderr);
     ::_exit(kHangs);
   }
 
@@ -149,7 +149,8 @@ class Server {
     const nanoseconds until = monotonic_now() + kLastFrame;
     while (!servo_.ended()) {
       if (monotonic_now() > until) {
-        std::fputs("limpid-vendor: the maker's library does not return at the end\n", stderr);
+        std::fputs("limpid-vendor: the maker's library does not return while limpid-vendor ends\n",
+                   stderr);
         ::_exit(kHangs);
       }
       pollfd news{*news_, POLLIN, 0};

@@ -41,7 +41,7 @@ void FrameTarget::allocate() {
   glBindRenderbuffer(GL_RENDERBUFFER, 0);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, b.depth);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw std::runtime_error("OpenGL gives no picture of " + std::to_string(width_) + " x " +
+    throw std::runtime_error("OpenGL cannot make a picture of " + std::to_string(width_) + " x " +
                              std::to_string(height_) + " pixels with " + std::to_string(samples_) +
                              " samples");
 }

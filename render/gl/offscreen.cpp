@@ -24,7 +24,8 @@ namespace {
 EGLDisplay surfaceless_display() {
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base") ||
       !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-    throw std::runtime_error("no offscreen picture: EGL has no surfaceless platform here");
+    throw std::runtime_error(
+        "no offscreen picture: EGL has no surfaceless platform on this computer");
   return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 }
 
@@ -167,7 +168,7 @@ std::vector<unsigned char> png_of(int width, int height, const std::vector<unsig
                                   unsigned per_metre) {
   if (width < 1 || height < 1 ||
       rgba.size() != 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
-    throw std::invalid_argument("a picture's size and its pixels do not agree");
+    throw std::invalid_argument("the size of a picture does not match the number of its pixels");
   std::vector<unsigned char> png;
   const auto append = [](void* to, void* data, int size) {
     const auto* bytes = static_cast<const unsigned char*>(data);

@@ -27,8 +27,8 @@ std::vector<unsigned char> read_bytes(const fs::path& path, std::size_t most) {
   const std::streamoff size = file.tellg();
   if (size < 0) refuse(path.string(), "cannot be read");
   if (static_cast<std::size_t>(size) > most)
-    refuse(path.string(), "makes the model larger than the " +
-                              std::to_string(kLargestModelFiles >> 20) + " MiB that are read");
+    refuse(path.string(), "makes the model larger than the limit of " +
+                              std::to_string(kLargestModelFiles >> 20) + " MiB");
   std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
   file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), size);
   if (!file) refuse(path.string(), "cannot be read");
@@ -43,7 +43,7 @@ fs::path Companions::resolve(const std::string& uri) const {
                      return static_cast<unsigned char>(c) < 0x20;
                    });
   if (odd || std::find(relative.begin(), relative.end(), "..") != relative.end())
-    refuse(name_, what + "; allowed are files in its own folder");
+    refuse(name_, what + "; allowed: files in its own folder");
   std::error_code error;
   const auto home = fs::canonical(folder_, error);
   const auto file = fs::weakly_canonical(home / relative, error);

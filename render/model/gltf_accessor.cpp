@@ -78,7 +78,7 @@ std::span<const unsigned char> GltfAccessor::part(int buffer, std::size_t offset
                                                   std::size_t length, int view) const {
   const auto& bytes = at(gltf_.buffers, buffer, "buffer").data;
   if (offset > bytes.size() || length > bytes.size() - offset)
-    refuse("buffer view " + std::to_string(view) + " reaches outside of its buffer");
+    refuse("buffer view " + std::to_string(view) + " extends outside its buffer");
   return std::span(bytes).subspan(offset, length);
 }
 
@@ -101,7 +101,7 @@ std::span<const unsigned char> GltfAccessor::view(int buffer_view) {
 
 void GltfAccessor::take(std::size_t bytes) {
   if (bytes > kMostOwnBytes - own_bytes_)
-    refuse("has more than 512 MiB in compressed, sparse or empty accessors");
+    refuse("has more than 512 MiB in compressed, partly filled or empty accessors");
   own_bytes_ += bytes;
 }
 
@@ -145,7 +145,7 @@ Elements GltfAccessor::elements(int index) {
     const bool inside = accessor.byteOffset <= bytes.size() && e.stride >= packed &&
                         e.stride <= 252 &&
                         accessor.byteOffset + (e.count - 1) * e.stride + packed <= bytes.size();
-    if (!inside) refuse("accessor " + std::to_string(index) + " reaches outside of its buffer");
+    if (!inside) refuse("accessor " + std::to_string(index) + " extends outside its buffer");
     e.first = bytes.data() + accessor.byteOffset;
   }
   // Elements without data are zeros; a sparse accessor lists the exceptions.
@@ -172,7 +172,7 @@ void GltfAccessor::fill_in(const tinygltf::Accessor& accessor, Elements& e) {
     const auto from = static_cast<std::size_t>(offset);
     const bool inside = sparse.count >= 0 && from <= bytes.size() && size > 0 &&
                         static_cast<std::size_t>(sparse.count) <= (bytes.size() - from) / size;
-    if (!inside) refuse("a sparse accessor reaches outside of its buffer");
+    if (!inside) refuse("a sparse accessor extends outside its buffer");
     return bytes.data() + from;
   };
   const std::size_t index_size = bytes_of(sparse.indices.componentType);
@@ -213,7 +213,7 @@ Eigen::Vector4f GltfAccessor::element(const Elements& e, std::size_t i) const {
 }
 
 Eigen::Matrix4f GltfAccessor::matrix(const Elements& e, std::size_t i) const {
-  if (e.components != 16) refuse("a list of matrices has something else in it");
+  if (e.components != 16) refuse("a list of matrices has an element that is not a matrix");
   Eigen::Matrix4f out;
   std::memcpy(out.data(), e.first + i * e.stride, sizeof(float) * 16);
   return out;
@@ -275,7 +275,7 @@ Triangles read_triangles(GltfAccessor& file, const tinygltf::Primitive& primitiv
     const std::uint32_t k =
         primitive.indices >= 0 ? file.index(e, i) : static_cast<std::uint32_t>(i);
     if (k >= vertices)
-      file.refuse("index " + std::to_string(k) + " is outside of the mesh's " +
+      file.refuse("index " + std::to_string(k) + " is outside the mesh's " +
                   std::to_string(vertices) + " vertices");
     return k;
   };
@@ -283,9 +283,9 @@ Triangles read_triangles(GltfAccessor& file, const tinygltf::Primitive& primitiv
   const bool fan = primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
   if (!list && !fan && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP)
     file.refuse("a mesh is drawn in the unknown mode " + std::to_string(primitive.mode));
-  if (list && count % 3 != 0) file.refuse("indices do not make whole triangles");
+  if (list && count % 3 != 0) file.refuse("the number of indices is not a multiple of 3");
   const std::size_t made = list ? count / 3 : count < 3 ? 0 : count - 2;
-  if (made > most) file.refuse("has more than 6 million triangles, all nodes counted");
+  if (made > most) file.refuse("has more than 6 million triangles in all nodes together");
   Triangles out{{}, made};
   out.corners.reserve(3 * made);
   for (std::size_t i = 0; i < made; ++i) {
@@ -353,7 +353,8 @@ std::vector<Eigen::Affine3f> GltfRest::joints(const tinygltf::Skin& skin) {
       move = move * bind;
     }
     out.emplace_back(move.cast<float>());
-    if (!out.back().matrix().allFinite()) file_.refuse("has a skin that is not finite");
+    if (!out.back().matrix().allFinite())
+      file_.refuse("has a skin with a number that is not finite");
   }
   return out;
 }

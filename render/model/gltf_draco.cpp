@@ -69,7 +69,8 @@ void decode_draco(const tinygltf::Primitive& primitive, GltfAccessor& file, std:
   if (!view.IsInt() || !attributes.IsObject()) file.refuse("has Draco data that is incomplete");
   const auto mesh = decode(file.view(view.GetNumberAsInt()));
   if (!mesh) file.refuse("has Draco data that cannot be decoded");
-  if (mesh->num_faces() > most) file.refuse("has more than 6 million triangles, all nodes counted");
+  if (mesh->num_faces() > most)
+    file.refuse("has more than 6 million triangles in all nodes together");
   for (const std::string& key : attributes.Keys()) {
     const auto at = primitive.attributes.find(key);
     const auto& id = attributes.Get(key);

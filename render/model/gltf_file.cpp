@@ -123,13 +123,13 @@ std::span<const unsigned char> json_of_glb(std::span<const unsigned char> bytes,
                                            const std::string& name) {
   if (bytes.size() < 20) refuse(name, "is too short for a glTF file");
   if (word_at(bytes, 0) != 0x46546C67u)
-    refuse(name, "is not a glTF file (it begins neither with glTF nor {)");
+    refuse(name, "is not a glTF file (it does not begin with glTF or {)");
   if (word_at(bytes, 4) == 1) refuse(name, kOldGltf);
   if (word_at(bytes, 4) != 2)
     refuse(name, "is glTF " + std::to_string(word_at(bytes, 4)) + ", not 2");
   if (word_at(bytes, 8) != bytes.size())
-    refuse(name, "is truncated or padded, it has " + std::to_string(bytes.size()) +
-                     " bytes and says " + std::to_string(word_at(bytes, 8)));
+    refuse(name, "has the wrong length: it has " + std::to_string(bytes.size()) +
+                     " bytes, but its header says " + std::to_string(word_at(bytes, 8)));
   std::size_t at = 12;
   while (at < bytes.size()) {
     const std::size_t left = bytes.size() - at;
@@ -369,7 +369,7 @@ GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string
                          const std::filesystem::path& folder) {
   if (bytes.size() > kLargestModelFiles)
     refuse(name,
-           "is larger than the " + std::to_string(kLargestModelFiles >> 20) + " MiB that are read");
+           "is larger than the limit of " + std::to_string(kLargestModelFiles >> 20) + " MiB");
   auto text = json_of_text(bytes);
   const bool binary = text.empty();
   if (binary) text = json_of_glb(bytes, name);

@@ -21,7 +21,8 @@ std::vector<unsigned char> glb_bytes(const std::string& json,
                                      const std::vector<unsigned char>& data);
 
 inline constexpr const char* kOldGltf =
-    "is glTF 1.0, which is not read; convert it to glTF 2.0 (gltf-pipeline does)";
+    "is glTF 1.0, which Limpid cannot read; convert it to glTF 2.0 (for example with "
+    "gltf-pipeline)";
 
 // Checks the JSON text of a glTF file before memory is spent on it. Returns how many buffers stand
 // for the binary chunk (each would be a copy of it). Throws std::runtime_error naming the file for

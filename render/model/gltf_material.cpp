@@ -172,7 +172,7 @@ int GltfMaterials::texture(const Info& info, bool srgb, GltfMaterial& to, bool& 
     set = static_cast<int>(std::clamp(number(extension->second, "texCoord", set), -1.0, 99.0));
   }
   if (placed && (set != to.uv_set || !move.matrix().isApprox(to.uv_move.matrix()))) {
-    warn("a texture with coordinates of its own is left out");
+    warn("an image texture that has its own coordinates is not shown");
     return -1;
   }
   const auto& texture = file_.at(source_.gltf.textures, info.index, "texture");
@@ -184,7 +184,7 @@ int GltfMaterials::texture(const Info& info, bool srgb, GltfMaterial& to, bool& 
       source = value.Get("source").GetNumberAsInt();
   }
   if (source < 0) {
-    warn("a texture of a kind that is not read is left out:" + one_line(kinds));
+    warn("a texture of a kind that Limpid cannot read is ignored:" + one_line(kinds));
     return -1;
   }
   file_.at(source_.gltf.images, source, "image");
@@ -209,7 +209,7 @@ int GltfMaterials::picture(int source, bool srgb, Image::Wrap wrap_u, Image::Wra
   if (!image) {
     warn("image " + std::to_string(source) +
          (from.uri.empty() ? "" : " (\"" + one_line(from.uri) + "\")") +
-         (bytes.empty() ? " is missing, it is left out" : std::string(" is ") + kUnknownPicture));
+         (bytes.empty() ? " is missing, so it is ignored" : std::string(" is ") + kUnknownPicture));
     return -1;
   }
   image->srgb = srgb;

@@ -16,7 +16,7 @@ namespace limpid {
 
 // End of a warning about a picture that decode() cannot read.
 inline constexpr const char* kUnknownPicture =
-    "no PNG, JPEG or WebP that can be read, it is left out";
+    "not a PNG, JPEG or WebP that can be read, so it is ignored";
 
 // Decodes the pictures of a model: PNG, JPEG and WebP, within limits of size and work.
 class ModelImages {

@@ -84,7 +84,8 @@ void Reader::place_node(int index, const Eigen::Affine3d& parent, int depth) {
   // Each node has one parent, so the size of the file bounds the work.
   const auto at = static_cast<std::size_t>(index);
   if (seen_[at])
-    file_.refuse("node " + std::to_string(index) + " has two parents or is in a circle");
+    file_.refuse("node " + std::to_string(index) +
+                 " has two parents or is its own parent, directly or through other nodes");
   seen_[at] = true;
   poses_[at] = parent * transform(node);
   if (node.mesh >= 0) with_mesh_.push_back(index);
@@ -95,9 +96,10 @@ void Reader::add_primitive(const tinygltf::Primitive& primitive, int index) {
   const tinygltf::Node& node = gltf_.nodes[static_cast<std::size_t>(index)];
   to_model_ = poses_[static_cast<std::size_t>(index)];
   check_wanted(progress_);
-  if (++primitives_ > kMostPrimitives) file_.refuse("has more than 1 million parts over all nodes");
+  if (++primitives_ > kMostPrimitives)
+    file_.refuse("has more than 1 million parts in all nodes together");
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
-    add_warning(model_, "points and lines are left out");
+    add_warning(model_, "points and lines are ignored");
     return;
   }
   if (attribute_of(primitive.attributes, "POSITION") < 0) file_.refuse("a mesh has no POSITION");
@@ -111,7 +113,7 @@ void Reader::add_primitive(const tinygltf::Primitive& primitive, int index) {
   if (corners.empty()) return;
   const std::vector<std::uint32_t>& used = use_.renumber(corners, positions.count);
   if (model_.vertices.size() + used.size() > kMostVertices)
-    file_.refuse("has more than 8 million vertices over all nodes");
+    file_.refuse("has more than 8 million vertices in all nodes together");
   const auto first = static_cast<std::uint32_t>(model_.vertices.size());
   add_vertices(primitive, node, used, positions);
 
@@ -138,7 +140,7 @@ void Reader::add_vertices(const tinygltf::Primitive& primitive, const tinygltf::
     v.position = moves_.empty() ? Eigen::Vector3f((to_model_ * here.cast<double>()).cast<float>())
                                 : Eigen::Vector3f(moves_[i] * here);
     if (!(v.position.cwiseAbs().maxCoeff() < kFarthest))
-      file_.refuse("a vertex is farther than a million from the origin");
+      file_.refuse("a vertex is more than 1e6 m from the origin");
     v.normal.setZero();
     v.color = material.color;
     v.opacity = material.opacity;
@@ -225,7 +227,7 @@ bool may_be_left_out(const std::string& extension) {
 Model Reader::read() {
   for (const std::string& name : gltf_.extensionsRequired)
     if (!may_be_left_out(name))
-      file_.refuse("requires the extension " + name + ", which is not read");
+      file_.refuse("requires the extension " + name + ", which Limpid cannot read");
   seen_.assign(gltf_.nodes.size(), false);
   for (const int node : roots()) place_node(node, Eigen::Affine3d::Identity(), 0);
   for (std::size_t i = 0; i < with_mesh_.size(); ++i) {
@@ -235,7 +237,8 @@ Model Reader::read() {
     if (progress_.part)
       *progress_.part = 0.3 + 0.6 * static_cast<double>(i) / static_cast<double>(with_mesh_.size());
   }
-  if (!gltf_.animations.empty()) add_warning(model_, "its movement is left out: it stays at rest");
+  if (!gltf_.animations.empty())
+    add_warning(model_, "its animation is ignored: the model does not move");
   if (indices_.empty()) file_.refuse(kNoTriangles);
   join_parts(model_, indices_);
   model_.unit = 1;

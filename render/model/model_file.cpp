@@ -51,16 +51,16 @@ Model parse_model(std::span<const unsigned char> bytes, const std::string& name,
       bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
   const ModelKind* const kind = model_kind(name);
   if (bytes.size() > kLargestModelFiles)
-    throw std::runtime_error(name + ": is larger than the " +
-                             std::to_string(kLargestModelFiles >> 20) + " MiB that are read");
+    throw std::runtime_error(name + ": is larger than the limit of " +
+                             std::to_string(kLargestModelFiles >> 20) + " MiB");
   if (binary || (kind != nullptr && kind->gltf)) {
     Model model = parse_gltf(bytes, name, folder, progress);
     if (whole) *whole = pack_gltf(bytes, name, folder);
     return model;
   }
   if (kind != nullptr) return parse_other(bytes, *kind, name, folder, progress, whole);
-  throw std::runtime_error(name + ": is no model that can be read; allowed are " +
-                           model_suffixes());
+  throw std::runtime_error(name +
+                           ": is not a model that can be read; allowed: " + model_suffixes());
 }
 
 Model load_model_file(const fs::path& path, const LoadProgress& progress) {

@@ -77,7 +77,8 @@ void follow(int lines, Following& following, const LoadProgress& progress) {
     // The limit counts time on the wall: a program that waits takes no processor time.
     const std::chrono::seconds most{kPatience + 20 * following.limits.seconds};
     if (Clock::now() - begun > most) {
-      following.error = "is not read: the program that reads the model gave no answer for too long";
+      following.error =
+          "cannot be read: the program that reads the model did not answer for too long";
       return;
     }
     pollfd waiting{lines, POLLIN, 0};
@@ -103,10 +104,10 @@ ConvertedModel convert_model(std::span<const unsigned char> bytes, const ModelKi
       out(::memfd_create("glb", MFD_CLOEXEC));
   std::array<int, 2> ends{-1, -1};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0 || *in < 0 || *out < 0)
-    refuse(name, "cannot be read, there are too many open files");
+    refuse(name, "cannot be read: too many files are open");
   const Descriptor lines(ends[0]);
   Descriptor other_end(ends[1]);
-  if (!write_all(*in, bytes)) refuse(name, "is too large for the memory");
+  if (!write_all(*in, bytes)) refuse(name, "is too large for this computer's memory");
   const std::string at = own_program(kProgram).string();
   const std::string place = kind.files == ModelFiles::one ? "" : folder.string();
   const std::array given{Given{*in, STDIN_FILENO}, Given{*out, STDOUT_FILENO},

@@ -29,12 +29,12 @@ inline ReaderLimits reader_limits(std::size_t bytes) {
 
 inline std::string too_much_memory(const ReaderLimits& limits) {
   return "needs more than " + std::to_string(limits.memory >> 20) +
-         " MiB of memory to be read, which is all that a model of its size gets";
+         " MiB of memory to be read; this is the limit for a model of its size";
 }
 
 inline std::string too_long(const ReaderLimits& limits) {
   return "takes more than " + std::to_string(limits.seconds) +
-         " s to be read, which is all that a model of its size gets";
+         " s to be read; this is the limit for a model of its size";
 }
 
 // A model of another kind, made glTF by a program of its own: what a broken file does to the

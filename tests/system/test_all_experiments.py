@@ -20,7 +20,7 @@ HOLDS = {"at most": operator.le, "at least": operator.ge}
 PROMISES = json.loads((ROOT / "tests/support/promises.json").read_text())
 # Promise of every experiment.
 for promises in PROMISES.values():
-    promises.append(("trials that diverged, of those that may not", "at most", 0))
+    promises.append(("number of diverged trials, among the trials that must not diverge", "at most", 0))
 
 
 class AllExperiments(SystemTest):

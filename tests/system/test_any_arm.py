@@ -91,8 +91,8 @@ class AnyArm(SystemTest):
     def test_check_ends_with_what_it_found(self) -> None:
         fine = limpid("check", self.write("scara.urdf", SCARA))
         self.assertEqual(fine.status, 0, fine.err + fine.out)
-        for words in ("4 joints to 'tool0'", "0 to 0.2 m", "condition (3) holds", "fine",
-                      "torque as the effort above, reached within 20 ms"):
+        for words in ("4 joints to 'tool0'", "0 to 0.2 m", "condition (3) is met", "fine",
+                      "torque as in the column effort, reached in 20 ms"):
             self.assertIn(words, fine.out)
         warned = limpid("check", self.write("industrial.urdf", INDUSTRIAL))
         self.assertEqual(warned.status, 1, warned.err)
@@ -164,7 +164,7 @@ class AnyArm(SystemTest):
         endless = SCARA.replace('lower="0" upper="0.2"', 'lower="-1e6" upper="1e6"')
         found = limpid("check", self.write("endless.urdf", endless))
         self.assertEqual(found.status, 1, found.err)
-        self.assertIn("joint 'outer_spindle' slides over 2e+06 m", found.out)
+        self.assertIn("joint 'outer_spindle' slides through 2e+06 m", found.out)
 
     def test_check_says_what_cannot_move(self) -> None:
         stuck = SCARA.replace('<limit lower="-2.4" upper="2.4" effort="60"',

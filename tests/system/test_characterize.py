@@ -39,7 +39,7 @@ class Characterize(SystemTest):
         self.assertEqual((numbers["delay"]["value"], numbers["delay"]["assumed"]), (1, False))
         self.assertTrue(numbers["encoder_step"]["assumed"])
         self.assertIn("ASSUMED: exact", result.out)
-        self.assertIn("----  direct: stiffest wall, divided by (b_d + b_h)/(T/2 + delay)", result.out)
+        self.assertIn("----  direct coupling: stiffest wall, divided by (b_d + b_h)/(T/2 + delay)", result.out)
         for end in ("report.html", "characterize.svg", "characterize.csv"):
             self.assertTrue((out / end).exists(), end)
 
@@ -88,7 +88,7 @@ class Characterize(SystemTest):
         for words, said in ((("nothing.urdf",), "nothing.urdf"), ((), "needed: an arm's file"),
                             (("omni.urdf", "--coupling", "tank"), "measures every law"),
                             (("omni.urdf", "--set", "hand.stiffness=3"), "hand.stiffness: cannot be chosen here"),
-                            (("--device", "socket:none"), "nothing is. Plug the device in: "
+                            (("--device", "socket:none"), "no device is connected. Plug the device in: "
                                                           "a connected device reports the encoder steps itself.")):
             with self.subTest(words=words):
                 result = limpid("characterize", *words, "--out", out)
@@ -105,7 +105,7 @@ class Characterize(SystemTest):
             book.write_text(f'[device."socket:played"]\n{key} = "/home/me/identified.urdf"\n')
             result = limpid("characterize", "--device", "socket:played", "--out", self.folder / "out")
             self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
-            self.assertIn("socket:played: is not connected; nothing is. Plug the device in", result.err)
+            self.assertIn("socket:played: is not connected; no device is connected. Plug the device in", result.err)
             self.assertIn("Without the device: limpid characterize /home/me/identified.urdf --set "
                           "device.encoder_step=STEP", result.err)
         book.write_text('[device."socket:played"]\ntaken_for = "built-in"\n')

@@ -58,7 +58,7 @@ class Help(SystemTest):
                 if command in ("run", "analyze", "serve") or line.startswith("  -"):
                     self.assertLessEqual(len(line), 110, line)
         text = " ".join(limpid("run", "--help").out.split())
-        self.assertIn("Spring between device and proxy, (1)-(2).", text)
+        self.assertIn("Spring between device and proxy, equations (1)-(2).", text)
         self.assertIn("Share of the packets between device and proxy that never arrive", text)
 
     def test_help_and_the_version_are_found_by_their_other_names(self) -> None:
@@ -336,7 +336,7 @@ class Checked(SystemTest):
     def test_flaws_of_a_scene_are_said(self) -> None:
         plane = '[[plane]]\nname = "wall"\npoint = [0.2, 0.0, {z}]\nnormal = [0.0, 0.0, 1.0]\n'
         for text, said in (
-            (plane.format(z=-5) + "stiffness = 600", "beyond the tip's reach"),
+            (plane.format(z=-5) + "stiffness = 600", "outside the tip's reach"),
             (plane.format(z=-0.04) + "stiffness = 600\nfriction_static = 0.1\nfriction_kinetic = 0.2",
              "above friction_static"),
             (plane.format(z=-0.04) + "stiffness = 20000", "is stiffer than"),

@@ -59,7 +59,7 @@ class Drop(WindowTest):
         write_obj(obj)
         self.drop(glb, stl, obj)
         self.wait("three models", lambda s: s["objects"] == 4 and not s["loading"])
-        self.wait_for_notice("in mm, z up (guessed), 6 cm")
+        self.wait_for_notice("in mm, z up (guessed), largest size 6 cm")
         self.wait_for_notice("in m, y up")
 
     def test_what_cannot_be_opened_says_what_can(self) -> None:

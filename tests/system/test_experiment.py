@@ -109,14 +109,14 @@ class OnAnotherArm(SystemTest):
         self.assertIn("inertia, on touch with its readings: measured\n", result.out)
         verdict = json.loads((out / "inertia.json").read_text())
         self.assertEqual(verdict["arm"], "touch with its readings")
-        for words in ("arm touch of 3 joints", "0.000419 rad a step of the encoders", "1 ms of delay"):
+        for words in ("arm touch of 3 joints", "0.000419 rad per encoder step", "1 ms of delay"):
             self.assertIn(words, verdict["caption"])
         for check in verdict["checks"][:-1]:
             self.assertEqual((check["relation"], check["passed"]), ("measured", None))
-            self.assertIn("Promised for the built-in arm alone", check["unjudged"])
+            self.assertIn("Promised only for the built-in arm", check["unjudged"])
         self.assertGreater(verdict["checks"][0]["value"], 0.2, "friction does not scale with eta")
         page = (out / "report.html").read_text()
-        self.assertIn("1 measured on an arm for which no bound is promised.", page)
+        self.assertIn("Without a verdict, because no bound is promised for the arm: 1.", page)
         for text in (page, (out / "inertia.svg").read_text()):
             self.assertIn("on touch with its readings", text)
         session = read_session(out / "inertia/eta-1.h5")

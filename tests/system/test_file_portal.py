@@ -263,11 +263,11 @@ class Doctor(WithABus):
         return next(f["found"] for f in findings if f["what"] == "file dialog")
 
     def test_says_which_dialog_opens(self) -> None:
-        self.assertIn("Limpid's own: the desktop has no portal", self.found())
+        self.assertIn("Limpid's own dialog: the desktop has no portal", self.found())
         self.portal(how="wait")
         self.assertTrue(re.search(r"the desktop environment.*FileChooser 4", self.found()))
         del self.environment["DBUS_SESSION_BUS_ADDRESS"]
-        self.assertIn("Limpid's own: no session bus", self.found())
+        self.assertIn("Limpid's own dialog: no session bus", self.found())
 
 
 if __name__ == "__main__":

@@ -167,7 +167,7 @@ class AxesOfADevice(PaddleWindow):
             self.begin_check()
             self.wait("its end", lambda s: not s["device_panel"]["checking"]
                       and (s["device_panel"]["check"] or s["identify"]["plugged"]))
-        self.wait_for_notice("The device's axes move as the motors push.")
+        self.wait_for_notice("The device's axes move in the direction in which the motors push.")
         self.wait("the device in the loop", lambda s: s["identify"]["plugged"])
         self.assertFalse(self.state()["force"])
         self.wait("why it has none", lambda s: s["device_panel"]["explains_force"])

@@ -185,7 +185,7 @@ class InTheWindow(WindowTest):
         self.arm_until_it_lifts()
         self.service.wait_for_all_so_far()
         holder = f"process {self.app.pid} (limpid "
-        for words, why in (((), "Another window of Limpid uses a device already"),
+        for words, why in (((), "Another window of Limpid already uses a device"),
                            ((str(ASSETS / "scenes" / "table.toml"),), "was started with a file")):
             with self.subTest(words=words):
                 device = self.another_window(*words)["device_panel"]

@@ -153,7 +153,7 @@ def said(work):
         return str(error)
 assert "did you mean device/position?" in said(lambda: row["device/positon"])
 assert "did you mean coupling.eta?" in said(lambda: loop.set({"coupling.etta": 1}))
-assert "is of the simulated hand" in said(lambda: limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", hand__stiffness=3))
+assert "belongs to the simulated hand" in said(lambda: limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", hand__stiffness=3))
 assert "joint 1 has 9" in said(lambda: limpid.DeviceLoop([9, -0.8, 1.5], arm="omni.urdf"))
 assert "effort 0" in said(lambda: limpid.Arm("a", [dict(name="j", effort=0, mass=1)]))
 assert max(abs(a - b) for a, b in zip(loop.proxy_tip, loop.tip)) < 1e-6

@@ -278,7 +278,7 @@ class Live(unittest.TestCase):
             time.sleep(0.5)
             loop.stop()
             for verb, keys, said in (
-                    ("twin", {}, "virtual arm"), ("open", {"hand": "touch.csv"}, "a person's hand leads a real device"),
+                    ("twin", {}, "virtual arm"), ("open", {"hand": "touch.csv"}, "a person's hand moves a real device"),
                     ("open", {"arm": "omni.urdf"}, "real device"),
                     ("set", {"values": {"device.torque_limit": 100}}, "Only a person raises a limit"),
                     ("arm", {}, "is not known")):

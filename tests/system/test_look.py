@@ -140,7 +140,7 @@ class Look(unittest.TestCase):
                 self.assertGreater(found[key], 1.5, key)
             self.assertGreater(found["no_force_s"][1], 1.5)
             text = limpid("devices", "look", "socket:played", "--record", self.out, "--force", "--seconds", "1").out
-            for said in ("pressed: 1, 3", "a button on the device", "not calibrated for", "no hand on the switch",
+            for said in ("pressed: 1, 3", "a button on the device", "not calibrated for", "nobody holds the switch",
                          "25 % of the hottest", "turret [rad]", "not checked yet", "got no force"):
                 self.assertIn(said, text)
 
@@ -163,7 +163,7 @@ class Look(unittest.TestCase):
 
     def test_what_cannot_be_is_refused(self) -> None:
         with Played("played"):
-            for words, said in ((("nothing:1",), "nothing:1: is not connected; these are: socket:played"),
+            for words, said in ((("nothing:1",), "nothing:1: is not connected; connected devices: socket:played"),
                                 (("socket:played", "--seconds", "0"), "--seconds"),
                                 (("socket:played", "--seconds", "1e9"), "--seconds")):
                 result = limpid("devices", "look", *words, "--record", self.out)

@@ -39,7 +39,7 @@ class ReaderProgramTest(SystemTest):
         self.assertIn("crashed (SIGSEGV)", self.read_with("kill -SEGV $$"))
 
     def test_one_that_takes_for_ever(self) -> None:
-        self.assertIn("far longer", self.read_with("kill -XCPU $$"))
+        self.assertIn("much longer", self.read_with("kill -XCPU $$"))
 
     def test_one_that_says_nothing(self) -> None:
         self.assertIn("cut off", self.read_with("exit 0"))

@@ -104,7 +104,7 @@ class Recording(WithAnArm):
                 self.assertEqual(len(result.error_lines), 1, result.err)
                 said = re.search(
                     r"unstable since t = (\d+\.\d{3}) s: "
-                    r"the (torque|speed|distance) .* joint [123] (grew beyond|is not finite)",
+                    r"the (torque|speed|distance) .* joint [123] (became larger than|is not finite)",
                     result.err,
                 )
                 self.assertIsNotNone(said, result.err)

@@ -173,7 +173,7 @@ class TestRemoteWindow(WindowTest):
         self.key("b")
         self.wait("no twin", lambda s: s["shown_lanes"] == 1)
         self.loop.start_over()
-        self.wait_for_notice("Started over")
+        self.wait_for_notice("The simulation has started over")
 
     def test_recordings_have_the_name_that_is_asked_for(self) -> None:
         file = self.loop.record(self.home / "a.h5")
@@ -434,7 +434,7 @@ class TestRemoteWindow(WindowTest):
         self.assertIn("spheres.toml", self.state()["file"])
         other.close()
         self.check_is_back(scene)
-        self.assertIn("The program that led this window has ended. Your settings are back.", self.notices())
+        self.assertIn("The program that controlled this window has ended. Your settings are back.", self.notices())
         self.stop(self.app)
         kept = self.kept()
         self.assertEqual((kept["parameters"]["coupling"]["kind"], kept["window"]["scene"]), ("standard", ""))

@@ -34,7 +34,7 @@ class Story(WindowTest):
         self.xdotool("mousedown", "1")
         self.wait("the arm to be the user's", lambda s: not s["playing"])
         self.xdotool("mouseup", "1")
-        self.wait_for_notice("P gives it back")
+        self.wait_for_notice("P continues the story")
         self.hold_tip()
         self.xdotool("mouseup", "1")
 

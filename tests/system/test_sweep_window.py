@@ -67,7 +67,7 @@ class SweepWindow(WindowTest):
         self.wait("the mouse on it", lambda s: s["sweep"].get("pointed_at") == number)
         self.xdotool("click", "1")
         self.wait_for_notice(f"Point {number}: kind proposed, wall {WALLS[wall]} N/m, "
-                             f"eta {ETAS[eta]:g}. The result equals the table to the last bit.")
+                             f"eta {ETAS[eta]:g}. The result is exactly the same as in the table.")
         self.wait("playback", lambda s: s["playing"] and s["dialog"] == "")
 
 
@@ -168,7 +168,7 @@ class Tables(SweepWindow):
         self.open(damaged.parent)
         self.wait_for_notice("damaged")
         self.open(without)
-        self.wait_for_notice("holds no plan")
+        self.wait_for_notice("contains no plan")
         self.assertIsNone(self.state()["sweep"])
         self.key("Escape")
         self.wait("no dialog", lambda s: s["dialog"] == "")
@@ -186,7 +186,7 @@ class Tables(SweepWindow):
         self.move(*self.point_at(1, 1))
         self.wait("the mouse on it", lambda s: s["sweep"].get("pointed_at") == point(0, 1, 1))
         self.xdotool("click", "1")
-        self.wait_for_notice("Another build of limpid (0123456789abcdef) made the table: chatter is")
+        self.wait_for_notice("which another build of limpid (0123456789abcdef) made: chatter is")
 
     def test_with_other_files_it_is_only_looked_at(self) -> None:
         with h5py.File(self.table(), "a") as table:

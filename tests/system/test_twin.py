@@ -25,7 +25,7 @@ class Headless(WithAnArm):
             self.assertGreater(error(file["twin"]), 20 * error(file))
             self.assertIn("standard", file["twin"].attrs["config"])
         said = limpid("info", out).out
-        self.assertIn("two runs on one hand", said)
+        self.assertIn("two runs with the same hand", said)
         table = self.out(".csv")
         self.assertEqual(limpid("info", out, "--csv", table).status, 0)
         self.assertIn("twin_device_position_1_rad", table.open().readline())
@@ -51,7 +51,7 @@ class Headless(WithAnArm):
                 for name in ("device/position", "proxy/contact_torque", "energy/port"):
                     numpy.testing.assert_array_equal(a[run + name], b[run + name])
         said = limpid("info", first).out
-        self.assertIn("three runs on one hand", said)
+        self.assertIn("three runs with the same hand", said)
         table = self.out(".csv")
         self.assertEqual(limpid("info", first, "--csv", table).status, 0)
         self.assertIn("lane3_device_position_1_rad", table.open().readline())

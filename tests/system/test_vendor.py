@@ -289,7 +289,7 @@ class Serves(unittest.TestCase):
 
     def test_an_unknown_model_is_refused(self) -> None:
         with Vendor(*OMEGA, "unknown_model") as vendor:
-            self.assertIn("no model whose range", self.ends(vendor, 1))
+            self.assertIn("range and force of the model", self.ends(vendor, 1))
 
     def test_a_device_that_has_to_move_is_refused_until_somebody_says_so(self) -> None:
         with Vendor(*OMEGA, "calibration") as vendor:
@@ -521,7 +521,7 @@ class InLimpid(WithLimpid):
 
     def test_a_device_that_is_not_there_is_said(self) -> None:
         _, said = self.start("no_device", "run", "--live", ":".join(TOUCH), "--yes").communicate(timeout=60)
-        self.assertIn("cannot open it", said)
+        self.assertIn("cannot open the device", said)
 
     def test_no_force_once_limpid_is_killed(self) -> None:
         for device in BOTH:

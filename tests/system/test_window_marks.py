@@ -337,7 +337,7 @@ class Experiments(WindowTest):
                          if show in b["buttons"]))
         self.wait("the dialog", lambda s: s["dialog"] == "experiments")
         self.click_on("Experiments", "Stop")
-        self.wait_for_notice("Stopped")
+        self.wait_for_notice("The experiments have stopped.")
         self.key("Escape")
         self.wait("nothing under way", lambda s: s["dialog"] == "" and not s["banners"])
 

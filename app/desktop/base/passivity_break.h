@@ -13,7 +13,8 @@ Parameters without_passivity(const Parameters& p, const ArmDescription& arm);
 // Gives these settings to the run that is edited; does nothing if passivity is broken already.
 void break_passivity(Settings& settings, const ArmDescription& arm);
 inline constexpr const char* kBreakEnded =
-    "The break is over. All settings have the values from before the break.";
+    "The demonstration of broken passivity has ended. All settings have their earlier values "
+    "again.";
 inline bool passivity_broken(const Settings& settings) { return settings.before_break.has_value(); }
 // Puts back all settings of all lanes from before; does nothing if passivity is not broken.
 void end_passivity_break(Settings& settings);

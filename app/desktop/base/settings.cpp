@@ -94,14 +94,14 @@ void each(S& s, Visit&& visit) {
 }
 
 void complain(std::string& complaint, const std::string& why) {
-  complaint += fmt::format("{}{}", complaint.empty() ? "settings not read: " : "; ", why);
+  complaint += fmt::format("{}{}", complaint.empty() ? "the settings were not read: " : "; ", why);
 }
 
 void lower(Parameters& p, const std::string& limit, std::string& complaint) {
   const ParameterInfo& info = *find_parameter(limit);
   set_parameter_number(p, info, 0);
-  complain(complaint,
-           fmt::format("{} is {} {} until it is set", limit, parameter_number(p, info), info.unit));
+  complain(complaint, fmt::format("{} is {} {} until you set another value", limit,
+                                  parameter_number(p, info), info.unit));
 }
 
 // A limit that a user has lowered stays lowered, even if the file cannot be understood.

@@ -74,7 +74,7 @@ struct Settings {
   double band = 5;                            // of the human's motion, for the analysis [Hz]
   std::string device, scene;                  // files; empty: the default
   std::string device_tip;                     // a link of the device; empty: as its file has it
-  std::string gamepad;  // the gamepad that leads the hand, as GLFW identifies it; or none
+  std::string gamepad;  // the gamepad that moves the hand, as GLFW identifies it; or none
   std::vector<PlotChoice> plot_choices = default_plots();
   std::vector<std::string> recent;          // recordings and scenes, the newest first
   LaneSettings lanes;                       // starts with one

@@ -106,8 +106,8 @@ std::string NamedTexts::rename(const std::string& from, const std::string& to) {
   return change([&](Tables& own) {
     const toml::table* renamed = own.all[from].as_table();
     if (renamed == nullptr) {
-      throw FileError(
-          fmt::format("{} does not exist any more: another window changed the list.", from));
+      throw FileError(fmt::format(
+          "{} does not exist any more, because another window changed the list.", from));
     }
     if (own.all.contains(to)) throw FileError(fmt::format("The name {} is used already.", to));
     own.all.insert(to, *renamed);

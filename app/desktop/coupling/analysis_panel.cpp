@@ -116,23 +116,24 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
     }
   }
   const TipWall& mine = tip_.wall(p.kind);
-  tooltip(fmt::format("How stiff a wall each coupling renders well at this pose, along the tip's "
-                      "least damped direction.\n{}: {:.0f} N/m, {}.\nGrey line: {:.0f} N/m, the "
-                      "most that a plain spring can show and be passive in every hand "
-                      "(b_d/(T/2 + delay), Colgate and Schenkel). "
-                      "Coloured line: the stiffest thing in this scene.",
+  tooltip(fmt::format("The stiffest wall that each coupling renders well at this pose, in the "
+                      "direction in which the tip is damped least.\n{}: {:.0f} N/m ({}).\nGrey "
+                      "line: {:.0f} N/m, the stiffest wall that a plain spring can render and "
+                      "still be passive in every hand (b_d/(T/2 + delay), Colgate and Schenkel). "
+                      "Coloured line: the stiffest object in this scene.",
                       info(p.kind).label, mine.stiffness, mine.bound, tip_.every_hand)
               .c_str());
   if (tip_.scene <= 0) return;
   const bool soft = info(p.kind).knows_link() && !info(p.kind).observes;
   const bool over = !soft && tip_.scene > mine.stiffness;
-  read_out(
-      "stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
-      over ? fmt::format("Too stiff: {} renders well only up to {:.0f} N/m here. The bound: {}.",
-                         info(p.kind).key, mine.stiffness, mine.bound)
-           : "",
-      soft ? "The hand feels a softer wall: this coupling's spring lies between hand and wall."
-           : "This coupling renders this stiffness well");
+  read_out("stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
+           over ? fmt::format("The object is too stiff: the coupling {} renders well only up to "
+                              "{:.0f} N/m here. Limit: {}.",
+                              info(p.kind).key, mine.stiffness, mine.bound)
+                : "",
+           soft ? "The hand feels a softer wall, because this coupling's spring lies between hand "
+                  "and wall."
+                : "This coupling renders this stiffness well");
 }
 
 void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
@@ -152,35 +153,36 @@ void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
   };
   const ChartAxis frequency{kSlowest, kFastest, true};
   {
-    const Chart chart("inertia felt [g at the tip] over frequency [Hz]", frequency,
+    const Chart chart("inertia felt [g at tip] against frequency [Hz]", frequency,
                       {0, 1.25 * std::max(natural, wanted)}, 120);
     chart.dashes(over_frequency([&](double) { return wanted; }), colour(colours.muted));
     draw_all(chart, mass);
   }
-  tooltip(
-      fmt::format(
-          "Each coupling at \xCE\xB7 {:.3g} in free motion; thick: {}. Dashed: \xCE\xB7 times the "
-          "natural {:.3g} g. From theory, without the encoder's steps.",
-          p.eta, info(p.kind).key, natural)
-          .c_str());
+  tooltip(fmt::format("Each coupling at \xCE\xB7 {:.3g} in free motion. Thick line: {}. Dashed "
+                      "line: \xCE\xB7 times the arm's own inertia of {:.3g} g. The lines come from "
+                      "theory, without the encoder's steps.",
+                      p.eta, info(p.kind).key, natural)
+              .c_str());
   {
     const double own = tip_.felt.b_d + tip_.felt.b_v;
-    const Chart chart("damping felt [N s/m] over frequency [Hz]", frequency,
+    const Chart chart("damping felt [N s/m] against frequency [Hz]", frequency,
                       {0, 1.6 * std::max(own, least)}, 100);
     if (least > 0) {
       chart.dashes(over_frequency([&](double) { return least; }), colour(colours.muted));
     }
     draw_all(chart, damping);
   }
-  tooltip(fmt::format("Dashed: {:.2g} N s/m, the least at low frequency that every passive law "
-                      "has to make felt for this inertia up to {:.3g} Hz.",
+  tooltip(fmt::format("Dashed line: {:.2g} N s/m. A passive law must make the hand feel at least "
+                      "this damping at low frequency to render this inertia up to {:.3g} Hz.",
                       least, p.band)
               .c_str());
   if (info(p.kind).solves_together) {
-    if (const std::string late = late_text(tip_, p); !late.empty()) {
-      read_out("\xCE\xB7", late, {},
-               "An added mass that moves fast is a damper; where the torque may be late it would "
-               "push on. model.delay_most says how late it may be.");
+    if (const std::string less = less_added_text(tip_, p); !less.empty()) {
+      read_out("\xCE\xB7", less, {},
+               "An added mass that moves fast acts as a damper. If the torque comes late, this "
+               "damper would add energy (model.delay_most is the largest delay). If the proxy is "
+               "heavy (proxy.inertia_ratio), an added mass greater than the device's mass would "
+               "make device and proxy swing.");
     }
   }
   const FeltAtTip now = felt_at_tip(p.kind, p, tip_, band);
@@ -204,9 +206,9 @@ void AnalysisPanel::draw_observed(const Parameters& p, double& band) {
     read_out(label, fmt::format("{:.3f}", value), {}, help);
   };
   limit("\xCE\xB7_min, all frequencies", analysis_.eta_min,
-        "Limit of (25), for the worst mode at this pose");
-  limit("\xCE\xB7_min, this band", analysis_.eta_min_band.value_or(0),
-        "Least passive \xCE\xB7 if Re H_L >= 0 has to hold only below the human's bandwidth");
+        "Limit by equation (25), for the mode with the highest limit at this pose");
+  limit("\xCE\xB7_min in the band", analysis_.eta_min_band.value_or(0),
+        "Smallest passive \xCE\xB7 if Re H_L >= 0 is required only below the human's bandwidth");
   limit("\xCE\xB7_min in this grip", analysis_.eta_min_grip,
         "Routh's limit: above this \xCE\xB7 the loop is stable in this grip");
   std::string modes;
@@ -220,13 +222,12 @@ void AnalysisPanel::draw_observed(const Parameters& p, double& band) {
            {}, "Eigenvalues of M1 + M2 at this pose");
   std::complex<double> worst(-1e300, 0);
   for (const auto& pole : poles_) worst = pole.real() > worst.real() ? pole : worst;
-  read_out(
-      "slowest pole in this grip", pole_text(worst),
-      worst.real() > 0
-          ? "The loop is unstable while a hand holds the arm: a pole lies in the right half plane."
-          : "",
-      "For the locked system (hand, device and avatar as one) held by the grip, in continuous "
-      "time");
+  read_out("slowest pole in this grip", pole_text(worst),
+           worst.real() > 0 ? "The loop is unstable while a hand holds the arm, because a pole "
+                              "lies in the right half plane."
+                            : "",
+           "For the locked system (hand, device and avatar move as one body) held by the grip, in "
+           "continuous time");
 }
 
 void AnalysisPanel::draw_nyquist(const Parameters& p) const {
@@ -260,8 +261,9 @@ void AnalysisPanel::draw_nyquist(const Parameters& p) const {
     chart.text(chart.inside().min, "Im", colour(colours.muted));
   }
   tooltip(
-      "H_L(jw) of (24), one curve a mode of the inertia at the present pose. Positive real, and "
-      "so passive, while it stays right of the shaded half.");
+      "H_L(jw) of equation (24), with one curve per mode of the inertia at the present pose. The "
+      "coupling is positive real, and therefore passive, if all curves stay to the right of the "
+      "shaded half.");
 }
 
 }  // namespace limpid

@@ -110,11 +110,12 @@ std::string ChatterWatch::text() const {
   const bool now = Clock::now() - seen_ < kJustSeen;
   const char* const says = now ? "The loop chatters" : "The loop chattered";
   if (!wall) {
-    return fmt::format("{}: the {} law{} {} energy.", says, law.key, of, now ? "gives" : "gave");
+    return fmt::format("{}, because the {} law{} {} energy.", says, law.key, of,
+                       now ? "gives" : "gave");
   }
   return fmt::format(
-      "{}: {} ({:.4g} N/m) is stiffer than the {} law{} can render there without chatter.", says,
-      wall->name, wall->stiffness, law.key, of);
+      "{}, because {} ({:.4g} N/m) is stiffer than the {} law{} can render there without chatter.",
+      says, wall->name, wall->stiffness, law.key, of);
 }
 
 void ChatterWatch::take_predictive() {

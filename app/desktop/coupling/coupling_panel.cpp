@@ -22,9 +22,8 @@ namespace {
 std::string eta_broken(const Parameters& p, const Analysis& a) {
   if (!info(p.kind).observes || a.above_eta_min) return {};
   return fmt::format(
-      "\xCE\xB7 {:.3g} is below \xCE\xB7_min {:.3f} of (25): the locked system is not "
-      "passive.\nRaise \xCE\xB7 by "
-      "{:.3f}, lower \xCE\xB1, or raise b_v.",
+      "\xCE\xB7 {:.3g} is below \xCE\xB7_min {:.3f} of equation (25), so the locked system is not "
+      "passive.\nRaise \xCE\xB7 by {:.3f}, lower \xCE\xB1, or raise b_v.",
       p.eta, a.eta_min, a.eta_min - p.eta);
 }
 
@@ -54,18 +53,20 @@ std::string proxy_needs(const Parameters& p, const Analysis& a) {
 
 std::string device_broken(const Parameters& p, const Analysis& a) {
   if (!a.condition3.known) {
-    return "Condition (3): no bound is known where packets are lost (link loss). A side keeps its "
-           "last packet, which may be of any age.\nThe tank law stays passive with lost packets.";
+    return "Condition (3) of the paper: no limit is known if packets are lost (link loss). Each "
+           "side then uses the last packet that it received, however old the packet is.\nThe tank "
+           "law stays passive with lost packets.";
   }
   if (a.condition3.holds || a.condition3.device_margin >= 0) return {};
-  return fmt::format("Condition (3): b_d is {:.4g} N m s/rad short of {}.\nLower k_vc or b_vc.",
-                     -a.condition3.device_margin, device_needs(p, a));
+  return fmt::format(
+      "Condition (3) is broken: b_d is {:.4g} N m s/rad smaller than {}.\nLower k_vc or b_vc.",
+      -a.condition3.device_margin, device_needs(p, a));
 }
 
 std::string proxy_broken(const Parameters& p, const Analysis& a) {
   if (a.condition3.holds || a.condition3.proxy_margin >= 0) return {};
   return fmt::format(
-      "Condition (3): b_v is {:.4g} N m s/rad short of {}.\nRaise b_v or lower k_vc.",
+      "Condition (3) is broken: b_v is {:.4g} N m s/rad smaller than {}.\nRaise b_v or lower k_vc.",
       -a.condition3.proxy_margin, proxy_needs(p, a));
 }
 
@@ -145,7 +146,7 @@ void comparison_list(Parameters& p) {
                         ImGuiComboFlags_HeightLarge);
   if (now.for_comparison) ImGui::PopStyleColor(4);
   if (!open) {
-    tooltip("Laws of other programs and papers, live on the same hand, for comparison.");
+    tooltip("Laws of other programs and papers, for comparison. They run live with the same hand.");
     return;
   }
   for (std::uint8_t i = 0; i < kLaws; ++i) {
@@ -189,9 +190,10 @@ void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
   }
   const std::string text = fit_text(own);
   const char* const help =
-      "Gains from the arm's damping b_d, the arm's delay and the link's delay. With these k_vc, "
-      "b_vc and b_v condition (3) just holds. With this \xCE\xB1 the limit \xCE\xB7_min is the "
-      "paper's. An arm whose file says no damping gets a damping that suits the arm's inertia.";
+      "Gains computed from the arm's damping b_d, the arm's delay and the link's delay. With these "
+      "k_vc, b_vc and b_v condition (3) of the paper is just met. With this \xCE\xB1 the limit "
+      "\xCE\xB7_min equals the paper's limit. If the arm's file gives no damping, Limpid assumes a "
+      "damping that suits the arm's inertia.";
   if (fit == p) {
     read_out("Gains for this arm", text.empty() ? "the paper's" : "fitted", {}, help);
     return;
@@ -216,7 +218,7 @@ void draw_link(Parameters& p) {
   for (const std::string_view key : info(p.kind).sliders) {
     if (of_link(key)) slider(p, key.data());
   }
-  if (p.linked()) read_out("Through it", info(p.kind).through_link);
+  if (p.linked()) read_out("Through the link", info(p.kind).through_link);
 }
 
 // Returns whether the law's passivity is a matter of conditions on its gains.
@@ -257,15 +259,16 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
 void draw_observer(const Parameters& p, const Analysis& a) {
   const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
   read_out("Observer bandwidth \xCF\x89_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
-           "\xCE\xB1 / m, (18), for each mode of the inertia in the rest pose");
+           "\xCE\xB1 / m, equation (18), for each mode of the inertia in the rest pose");
   read_out("Least passive \xCE\xB7, \xCE\xB7_min",
            fmt::format("{:.3f}  {}", a.eta_min, a.above_eta_min ? "ok" : "broken"),
-           eta_broken(p, a), "\xCF\x89_f / (\xCF\x89_c + \xCF\x89_f) with b = b_d + b_v, (25)");
+           eta_broken(p, a),
+           "\xCF\x89_f / (\xCF\x89_c + \xCF\x89_f) with b = b_d + b_v, equation (25)");
   const std::string unstable =
       p.eta < a.eta_min_compliant
           ? fmt::format(
-                "\xCE\xB7 {:.3g} is below {:.3f}, the limit of this grip: the loop is "
-                "unstable while the hand holds. Raise \xCE\xB7 or soften the grip.",
+                "\xCE\xB7 {:.3g} is below {:.3f}, the limit of this grip. The loop is unstable "
+                "while the hand holds the device. Raise \xCE\xB7 or soften the grip.",
                 p.eta, a.eta_min_compliant)
           : std::string();
   read_out("Least stable \xCE\xB7 in this grip", fmt::format("{:.3f}", a.eta_min_compliant),
@@ -279,12 +282,13 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
   const std::string proxy = proxy_broken(p, a);
   heading("Passivity");
   if (a.measured || real) {
-    read_out("These figures are", a.measured ? "measured" : "assumed", {},
-             a.measured
-                 ? "The figures below follow from the inertia, damping and delay that limpid "
-                   "identify measured on this device."
-                 : "The figures below follow from inertia and damping in the arm's file, and from "
-                   "the delay that is set. limpid identify measures inertia, damping and delay.");
+    read_out(
+        "These figures are", a.measured ? "measured" : "assumed", {},
+        a.measured
+            ? "The values below follow from the inertia, damping and delay that `limpid "
+              "identify` measured on this device."
+            : "The values below follow from the inertia and damping in the arm's file, and from "
+              "the delay that is set. `limpid identify` measures inertia, damping and delay.");
   }
   if (info(p.kind).observes) draw_observer(p, a);
   const auto verdict = [](const std::string& broken, double margin) {
@@ -293,11 +297,11 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
   };
   read_out("Condition (3), device", verdict(device, a.condition3.device_margin), device,
            ("b_d minus (" + device_needs(p, a) +
-            ") [N m s/rad]. The condition holds while this is not negative.")
+            ") [N m s/rad]. The condition is met while this difference is not negative.")
                .c_str());
   read_out("Condition (3), proxy", verdict(proxy, a.condition3.proxy_margin), proxy,
            ("b_v minus (" + proxy_needs(p, a) +
-            ") [N m s/rad]. The condition holds while this is not negative.")
+            ") [N m s/rad]. The condition is met while this difference is not negative.")
                .c_str());
 }
 
@@ -312,41 +316,42 @@ struct Share {
 std::vector<Share> shares_of(const CouplingReading& now, const LawInfo& law) {
   if (law.promise == Promise::tanks) {
     return {{"Proxy moves freely", now.contact_governor,
-             "The proxy's tank is low: a damper keeps the proxy from spending more than there is.",
+             "The proxy's energy tank is low. A damper keeps the proxy from using more energy than "
+             "the tank holds.",
              "The proxy's own damping, divided by the sum of this damping and the damper that the "
              "tank adds"},
             {"Torque rendered", now.torque_governor,
-             "The device's tank is low. The law lets through only the torque that the tank can pay "
-             "for. Moving the device fills the tank.",
-             "100 % while the device's tank can pay for the next tick"}};
+             "The device's energy tank is low. The law renders only as much torque as the tank has "
+             "energy for. Moving the device fills the tank.",
+             "100 % while the device's tank has enough energy for the next tick"}};
   }
   if (law.keeps_ledger()) {
     return {{"Wall force rendered", now.contact_governor,
-             "The reserve is low. The energy account holds back a part of the wall's force, so "
-             "that the energy given stays bounded. Softer walls, a finer encoder or a known delay "
-             "(model.delay) keep the reserve up.",
-             "100 % unless the reserve is low. While the reserve is low the proxy separates from "
-             "the device."},
+             "The reserve is low. The energy account reduces the wall's force, so that the energy "
+             "given stays limited. Softer walls, a finer encoder or a known delay (model.delay) "
+             "keep the reserve high.",
+             "Share of the coupling's force: 100 % unless the reserve is low. While the reserve is "
+             "low the proxy separates from the device."},
             {"Damping removed", now.damping_governor,
-             "The reserve is low. The law cancels less of the device's damping.",
+             "The reserve is low. The law cancels a smaller part of the device's damping.",
              "Share of the damping cancellation that the energy account allows"},
             {"Torque rendered", now.torque_governor,
-             "The hand was given nearly all the energy that the energy account allows. The account "
-             "holds back all torque until the hand has put energy in again. Arming the force "
-             "again, or starting the loop again, fills the account. A known delay (model.delay) or "
-             "a lower stiffness avoids the loss of torque.",
-             "100 % unless the hand was given nearly 5 mJ more than the hand put in"}};
+             "The hand has received nearly all the energy that the energy account allows. There is "
+             "no torque until the hand has given energy back. Switching the force on again, or "
+             "starting the loop again, fills the account. A known delay (model.delay) or a lower "
+             "stiffness avoids this loss of torque.",
+             "100 % unless the hand received nearly 5 mJ more energy than the hand gave"}};
   }
   std::vector<Share> all;
   if (law.torque_share != nullptr) {
     all.push_back(
         {"Torque rendered", now.torque_governor,
-         "The law holds back a part of the walls' torque. The walls feel softer than set.",
+         "The law reduces the walls' torque. The walls feel softer than the stiffness that is set.",
          law.torque_share});
   }
   if (law.damper_share != nullptr) {
     all.push_back({"Damper not needed", now.damping_governor,
-                   "A damper takes back energy that the walls gave.", law.damper_share});
+                   "A damper removes energy that the walls gave.", law.damper_share});
   }
   return all;
 }
@@ -426,11 +431,11 @@ void draw_differences(Parameters& p, const RecordedCoupling& recording, const Pa
   if (ImGui::Button("As recorded", {half, 0})) p = recorded;
   note_place("As recorded");
   ImGui::EndDisabled();
-  tooltip("Takes back all changes for the re-run.");
+  tooltip("Cancels all changes of settings for the re-run.");
   ImGui::SameLine();
   if (ImGui::Button("Take mine", {half, 0})) p = live;
   note_place("Take mine");
-  tooltip("Takes all settings of the live loop for the re-run.");
+  tooltip("Uses all settings of the live loop for the re-run.");
   ImGui::Spacing();
 }
 
@@ -441,37 +446,33 @@ void draw_count(const char* label, double count, const char* why) {
 
 // Draws in how many ticks forces were not found, if there were any.
 void draw_unsolved(const CouplingReading& now) {
-  draw_count(
-      "Ticks without a solution", now.unsettled,
-      "In these ticks the solver found no forces that suit contacts and motors at their limit. "
-      "The proxy stood still for each such tick, which is passive. Softer walls, fewer walls at "
-      "a time, less friction or stronger motors avoid such ticks.");
-  draw_count(
-      "Contact points left out", now.left_out,
-      "Objects touch at more points than the loop has room for. At the points left out the "
-      "objects do not push and may sink into each other. Fewer objects that lie on each other "
-      "avoid this error.");
-  draw_count(
-      "Ticks in which Limpid held objects still", now.stood_still,
-      "In these ticks the solver found no forces for a mechanism. The mechanism's bodies stood "
-      "still for each such tick, which only removes energy. Masses that are more alike, softer "
-      "stops and a shorter tick avoid such ticks.");
-  draw_count(
-      "Ticks in which Limpid slowed objects", now.turned_less,
-      "A mechanism moved so fast that one of its bodies would have turned by more than a radian "
-      "in a tick. The body turned by a radian and lost the rest of its energy. Heavier bodies, "
-      "softer springs and a shorter tick avoid these ticks.");
+  draw_count("Ticks without a solution", now.unsettled,
+             "In these ticks the solver found no forces that fit both the contacts and the motors "
+             "at their limit. The proxy stood still for each such tick, which is passive. Softer "
+             "walls, fewer walls at a time, less friction or stronger motors avoid such ticks.");
+  draw_count("Contact points left out", now.left_out,
+             "Objects touch at more points than the loop can compute. At the points ignored, the "
+             "objects do not push and may sink into each other. To avoid this error, use fewer "
+             "objects that lie on each other.");
+  draw_count("Ticks in which Limpid held objects still", now.stood_still,
+             "In these ticks the solver found no forces for a mechanism. The mechanism's bodies "
+             "stood still for each such tick, which only removes energy. Masses that differ less, "
+             "softer end stops and a shorter tick avoid such ticks.");
+  draw_count("Ticks in which Limpid slowed objects", now.turned_less,
+             "A mechanism moved so fast that one of its bodies would have turned by more than one "
+             "radian in a tick. The body turned by one radian and lost the rest of its energy. "
+             "Heavier bodies, softer springs and a shorter tick avoid these ticks.");
 }
 
 // Returns a way out of a coupling that gives energy.
 const char* way_out(const Parameters& p) {
   if (info(p.kind).on_device)
-    return "Remedy: a softer wall, a hand that damps, or the predictive law.";
+    return "Remedy: use a softer wall, a hand with more damping, or the predictive law.";
   if (p.linked())
-    return "Remedy: a shorter link delay, a softer k_vc, more damping, or the tank law.";
+    return "Remedy: use a shorter link delay, a softer k_vc, more damping, or the tank law.";
   return info(p.kind).observes
-             ? "Remedy: raise \xCE\xB7, lower the observer's gain, or take the predictive law."
-             : "Remedy: a softer k_vc, more damping (condition (3)), or the predictive law.";
+             ? "Remedy: raise \xCE\xB7, lower the observer's gain, or use the predictive law."
+             : "Remedy: use a softer k_vc, more damping (condition (3)), or the predictive law.";
 }
 
 // Returns why the coupling's own part of E_c is a fault; empty if it is none.
@@ -480,8 +481,8 @@ std::string own_fault(const CouplingReading& now, const Parameters& p) {
   // A law with a ledger makes another promise, which the ledger shows.
   if (info(p.kind).keeps_ledger() || own <= kGivenEnergy) return {};
   return fmt::format(
-      "The coupling has given {} more energy than the coupling took. The coupling is not passive "
-      "in this grip.\n{}",
+      "The coupling has given {} more energy than it received. The coupling is not passive in this "
+      "grip.\n{}",
       energy_text(own), way_out(p));
 }
 
@@ -495,27 +496,29 @@ void draw_givers(const CouplingReading& now, const Parameters& p) {
   const auto apart = [](const char* label, double joules, const char* help) {
     if (std::abs(joules) > kGivenEnergy) read_out(label, energy_text(joules), {}, help);
   };
-  apart("From switching", energy.by_changes(),
-        "The part of E_c from changes of law and settings. A change while the coupling is "
-        "stretched puts energy in, as bending a spring does. The coupling is not at fault.");
+  apart(
+      "From switching", energy.by_changes(),
+      "The part of E_c from changes of law and settings. A change while the coupling is stretched "
+      "adds energy, just as bending a spring stores energy. This is not a fault of the coupling.");
   apart("From the spring at the start", energy.stored(),
         "The part of E_c that the coupling's spring held when this run began. The spring gives "
-        "this energy back when the spring relaxes. The coupling is not at fault.");
+        "this energy back when the spring relaxes. This is not a fault of the coupling.");
   apart("Before the last change", energy.forgiven(),
         "The part of E_c that the coupling gave with earlier settings.");
   apart("From compensation, grip test", now.compensation,
         "The part of E_c that the motors gave for the device's weight, springs and friction, and "
         "for the test force that measures the grip.");
-  apart("Given by motors at limit or off", energy.by_limits(),
-        "The part of E_c from motors at their limit and from motors without force. Such a motor "
-        "gives another torque than the coupling asks for. The coupling is not at fault.");
+  apart(
+      "Energy by motors at their limit or off", energy.by_limits(),
+      "The part of E_c from motors at their limit and from motors that are off. Such a motor gives "
+      "a different torque than the coupling asks for. This is not a fault of the coupling.");
 }
 
 // Draws E_c as in the plots, and its sources.
 void draw_energy(const CouplingReading& now, const Parameters& p) {
   read_out("Controller energy E_c", energy_text(now.energy_total), {},
            "Energy that the coupling gave since the start, minus the energy that the device's own "
-           "damping took. The plots show the same E_c. The lines below name the sources of this "
+           "damping removed. The plots show the same E_c. The lines below name the sources of this "
            "energy.");
   draw_givers(now, p);
 }
@@ -535,9 +538,9 @@ void draw_limited(const CouplingReading& now) {
     constexpr double kApart = 1e-3;  // gap that is seen [m]
     ImGui::TextWrapped("%s", now.gap > kApart
                                  ? "The hand presses harder than the motors can push, so hand and "
-                                   "avatar drift apart. Lift the hand a little."
+                                   "avatar move apart. Press less hard."
                                  : "The hand presses harder than the motors can push, so the hand "
-                                   "feels less than the contact force. Lift the hand a little.");
+                                   "feels less than the contact force. Press less hard.");
   }
 }
 
@@ -548,11 +551,12 @@ void draw_break(bool broken, const Act& act) {
   if (pressed) {
     act(broken ? "coupling.end_break" : "coupling.break_passivity");
   }
-  tooltip(broken ? "Puts all settings back as they were before. C, Ctrl+Z and a change of law, "
-                   "scene, arm or recording do the same."
-                 : "Takes the proposed law, a stiff grip without damping, and so small a scaling "
-                   "\xCE\xB7 that the loop gives energy without end. A hand holds the arm: it "
-                   "begins to tremble, and E_c climbs. Repair puts everything back.");
+  tooltip(broken
+              ? "Puts all settings back as they were before this change. C, Ctrl+Z and a change "
+                "of law, scene, arm or recording do the same."
+              : "Sets the proposed law, a stiff grip without damping, and a scaling \xCE\xB7 so "
+                "small that the loop gives more and more energy. While a hand holds the arm, the "
+                "arm begins to tremble, and E_c rises. The button Repair puts all settings back.");
 }
 
 // Draws the inertia felt, of a law that scales it.
@@ -570,7 +574,7 @@ void draw_passive(const CouplingReading& now, const Parameters& p, const Analysi
       found.passive == true ? fmt::format("\nTheory says yes: {}.", found.by) : std::string();
   if (now.chatters && found.passive != false) {
     return read_out("Passive", "no, the loop chatters",
-                    fmt::format("The loop shakes and gains energy.\n{}", way_out(p)) + theory_too,
+                    fmt::format("The loop vibrates and gains energy.\n{}", way_out(p)) + theory_too,
                     "");
   }
   const std::string measured = own_fault(now, p);
@@ -580,7 +584,7 @@ void draw_passive(const CouplingReading& now, const Parameters& p, const Analysi
   if (!found.passive) return read_out("Passive", "not known", {}, found.by.c_str());
   const std::string broken =
       *found.passive ? ""
-                     : fmt::format("The coupling can give energy without end. Reason: {}.\n{}",
+                     : fmt::format("The coupling can give energy without limit. Reason: {}.\n{}",
                                    found.by, way_out(p));
   read_out("Passive", *found.passive ? "yes" : "no", broken,
            fmt::format("Why: {}.", found.by).c_str());
@@ -589,15 +593,15 @@ void draw_passive(const CouplingReading& now, const Parameters& p, const Analysi
 // Draws how far device and proxy are apart, and the scene's push on the proxy.
 void draw_apart(const CouplingReading& reading) {
   read_out("Apart at the tip", fmt::format("{:.2f} mm", 1e3 * reading.gap), {},
-           "How far the tips of your device and of its avatar, the proxy, are apart.");
+           "Distance between the tip of your device and the tip of its avatar, the proxy.");
   read_out("Apart in the joints",
            fmt::format("{:.2f} m{}", 1e3 * reading.error, reading.error_unit), {},
            "Coordination error |x_E|: joint angles of the device minus joint angles of the proxy. "
            "The first plot shows |x_E|.");
   read_out("Contact force", fmt::format("{:.2f} N", reading.contact), {},
-           "Force of the scene on the proxy. The hand feels less while a motor is at its limit, "
-           "while force is off, or while the law holds torque back. An object on the magnet does "
-           "not count here, but counts in f2 of the plots.");
+           "Force of the scene on the proxy. The hand feels less force while a motor is at its "
+           "limit, while the force is off, or while the law reduces the torque. The force of an "
+           "object on the magnet is not counted here, but is counted in f2 of the plots.");
 }
 
 void draw_show(const char* label, const char* help, const Act& act) {
@@ -622,9 +626,9 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
   draw_apart(reading);
   read_out(
       "Controller energy E_c", energy_text(reading.energy_total), own_fault(reading, p),
-      "Energy that the coupling gave since the start. E_c stays below zero while the coupling "
-      "is passive, unless a switch of laws or a motor without force adds energy. If E_c is above "
-      "zero, lines below the buttons name its sources. The second plot shows E_c.");
+      "Energy that the coupling gave since the start. E_c stays below zero while the coupling is "
+      "passive, unless a change of law or a motor that cannot give the torque adds energy. If E_c "
+      "is above zero, lines below the buttons name its sources. The second plot shows E_c.");
   draw_passive(reading, p, now.analysis);
 }
 
@@ -654,7 +658,7 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
   if (!now.real) draw_break(now.broken, act);
   if (has_conditions(info(p.kind))) draw_passivity(p, now.analysis, now.real);
   draw_reading(reading, p, now.analysis);
-  draw_show("Show less", "What a first hour needs (F8).", act);
+  draw_show("Show less", "Only what a beginner needs in the first hour (F8).", act);
 }
 
 void draw_coupling_of_rerun(Parameters& p, const RecordedCoupling& recording,

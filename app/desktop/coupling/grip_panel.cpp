@@ -15,9 +15,9 @@ namespace {
 
 constexpr const char* kAbout =
     "The motors add a small force for 9 s, and Limpid measures how the tip answers. Hold the "
-    "device as you will use it, still and away from walls. The virtual arm's hand holds still by "
-    "itself.\nPress this button to begin. The measurement ends by itself, or when the force goes "
-    "off.";
+    "device as you will use it, still and away from walls. With the virtual arm, the simulated "
+    "hand holds still by itself.\nPress this button to begin. The measurement ends by itself, or "
+    "when the force is switched off.";
 
 void wrapped(const std::string& text, Rgb rgb) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(rgb));
@@ -32,7 +32,8 @@ void draw_walls(const InHands& hands, CouplingKind kind) {
     text = std::isinf(*walls.up_to) ? "all" : fmt::format("up to {:.0f} N/m", *walls.up_to);
   read_out(
       fmt::format("stable walls, {}", info(kind).key).c_str(), text, {},
-      fmt::format("Walls that are stable in this hand, within the bounds above: {}.", walls.why)
+      fmt::format("Walls that are stable in this hand, for all values within the bounds above: {}.",
+                  walls.why)
           .c_str());
 }
 
@@ -42,10 +43,9 @@ void draw_found(const MeasuredHand& found, const Parameters& p) {
     wrapped("The grip is " + unknown + ".", colours.broken);
   }
   for (const GripLine& line : grip_lines(found)) {
-    read_out(
-        line.label.c_str(), line.value, {},
-        "With the bounds that hold for 95 of 100 grips; \xCE\xB7_min with its least and its most "
-        "within them");
+    read_out(line.label.c_str(), line.value, {},
+             "The bounds contain the true value in 95 of 100 measurements. For \xCE\xB7_min: its "
+             "smallest and its largest value for grips within these bounds.");
   }
   if (!found.hands) return;
   for (std::uint8_t i = 0; i < kLaws; ++i) {
@@ -60,7 +60,7 @@ void draw_grip(GripMeter& meter, const ArmDescription& arm, const Scene& scene, 
   if (meter.busy()) {
     progress_bar(
         meter.part(), 0,
-        meter.part() < 1 ? fmt::format("hold still: {:.0f} s", meter.time()) : "reckoning");
+        meter.part() < 1 ? fmt::format("hold still: {:.0f} s", meter.time()) : "calculating");
     if (noted_button("Stop measuring")) meter.stop();
     return;
   }

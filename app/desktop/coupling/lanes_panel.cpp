@@ -31,8 +31,8 @@ void choose(const RunNames& names, std::size_t& edited) {
     if (ImGui::Button(names.name(run).c_str(), {width, 0})) edited = run;
     if (chosen) ImGui::PopStyleColor();
     if (const int law = names.law(run); law >= 0) underline_button(law_ink(colours, law));
-    tooltip(
-        fmt::format("Click here: the sliders below then set the run {}.", names.name(run)).c_str());
+    tooltip(fmt::format("Click here. Then the sliders below change the run {}.", names.name(run))
+                .c_str());
     ImGui::PopID();
   }
 }
@@ -104,7 +104,8 @@ void draw_lanes(const Stage& stage, LaneRows rows, std::size_t* edited, bool& ov
   }
   ImGui::Checkbox("all in one picture", &overlaid);
   tooltip(
-      "Further runs in other shades over the first one, instead of pictures beside it (Shift+B).");
+      "Draws the other runs in other shades in the picture of the first run, not in separate "
+      "pictures beside it (Shift+B).");
   if (edited != nullptr) {
     if (rows.size() < kMostLanes) {
       flow("+ run");

@@ -64,14 +64,15 @@ void draw_tick(const Stage& stage, std::span<const double> row) {
   const auto kind = static_cast<CouplingKind>(one(Column::kind));
   if (info(kind).solves_together) {
     read_out("solved", solved_text(one(Column::solved)), {},
-             "How the solver made contacts, friction and the motors' limits agree");
+             "How the solver found forces that fit contacts, friction and the motors' limits");
     read_out("reserve", millijoules(one(Column::energy_ledger)), {},
-             "Energy that the law may still give, by the energy account");
+             "Energy that the law may still give, according to the energy account");
     read_out("wall force let through", fmt::format("{:.1f} %", 100 * one(Column::governor)));
   }
   if (layout.has(Column::objects_sweeps)) {
     read_out("sweeps", fmt::format("{:.0f}", one(Column::objects_sweeps)), {},
-             "Passes over all contacts until the forces on moving objects were found");
+             "How many times the solver went through all contacts until it found the forces on "
+             "moving objects");
     read_out("awake", fmt::format("{:.0f} of {}", one(Column::objects_awake), layout.bodies()), {},
              "Number of objects that move, of all movable objects");
     read_out("objects gained", millijoules(one(Column::objects_gain)), {},

@@ -29,8 +29,8 @@ void draw_late_ticks(const LoopStatus& status, bool motors) {
            "Ticks that began more than 0.2 ms after their deadline");
   read_out("missed", of_all(status.missed, status.ticks),
            status.missed > status.ticks / 100
-               ? "More than one tick in a hundred began over a tick late. Close other programs, or "
-                 "grant real-time priority (rtkit, or an rtprio limit)."
+               ? "More than 1 % of the ticks began later than a tick's length. Close other "
+                 "programs, or grant real-time priority (rtkit, or an rtprio limit)."
                : "",
            words.missed);
   read_out("slipped", of_all(status.slipped, status.ticks),
@@ -77,15 +77,17 @@ void draw_time_histogram(const LatencyHistogram& histogram, double late, const c
 LateTicks late_ticks(bool motors) {
   if (motors) {
     return {"Ticks that began after the next tick was due",
-            "Ticks skipped because the tick before began too late. With motors the loop never "
-            "makes up for skipped ticks.",
-            "The loop skipped ticks that were due during a late tick. Motors never get several "
-            "ticks in a burst. The loop continued later by the skipped time."};
+            "Ticks skipped because the tick before began too late. With a motorised device the "
+            "loop never runs skipped ticks later.",
+            "The loop skipped ticks that were due during a late tick, so that motors never get "
+            "several ticks at once. The loop continued later by the skipped time."};
   }
-  return {"Ticks that began after the next tick was due. The loop catches up on these ticks.",
-          "Ticks given up after long stalls",
-          "After a stall of over 20 ticks the loop continued later and did not catch up. Simulated "
-          "time fell back against the clock by the ticks given up."};
+  return {
+      "Ticks that began after the next tick was due. The loop then runs faster until it is on time "
+      "again.",
+      "Ticks skipped because the loop stood still for too long",
+      "After a stop of more than 20 ticks the loop continued later and did not run the missed "
+      "ticks. Simulated time is now behind the clock by the ticks skipped."};
 }
 
 void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_time) {
@@ -96,10 +98,9 @@ void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_
   read_out("wake-up p50 / p99",
            fmt::format("{:.0f} / {:.0f} us", 1e6 * wake.quantile(0.5), 1e6 * wake.quantile(0.99)),
            {}, "Time from a tick's deadline to the tick's begin");
-  draw_time_histogram(
-      wake, 1e-3,
-      "Wake-up latency of the haptic thread, 1 us to 100 ms, both axes logarithmic; "
-      "red: over one tick.");
+  draw_time_histogram(wake, 1e-3,
+                      "Wake-up latency of the haptic thread, 1 us to 100 ms. Both axes are "
+                      "logarithmic. Red: longer than one tick.");
   const LatencyHistogram& compute = loop.thread().compute_time();
   read_out("tick takes p50 / p99", fmt::format("{:.0f} / {:.0f} us", 1e6 * compute.quantile(0.5),
                                                1e6 * compute.quantile(0.99)));
@@ -115,7 +116,8 @@ void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_
              "Ticks that were lost because the buffer to the plots or the recording was full.");
   }
   read_out("picture quality", quality, {},
-           "View > Picture quality. Automatic: as good as this computer draws smoothly");
+           "Set it in View > Picture quality. Automatic: the best quality that this computer draws "
+           "smoothly");
   read_out("frame", fmt::format("{:.1f} ms", 1e3 * frame_time), {},
            "Time to draw one picture. The control loop does not wait for pictures.");
 }
@@ -136,7 +138,8 @@ void DeviceTiming::draw(const DevicePace& pace, const ArmDescription& arm, const
   } else {
     read_out("readings", fmt::format("{:.0f} Hz, every {}", f.rate, milliseconds(f.mean)),
              f.mean > kSlow * p.tick
-                 ? fmt::format("Slower than the loop, {}: ticks in between see nothing new.",
+                 ? fmt::format("The readings come more slowly than the ticks of the loop ({}). "
+                               "Ticks between two readings use the old position.",
                                milliseconds(p.tick))
                  : "",
              "How often the device reports its position");
@@ -145,8 +148,8 @@ void DeviceTiming::draw(const DevicePace& pace, const ArmDescription& arm, const
                          milliseconds(pace.intervals().quantile(0.99))),
              {}, "Standard deviation of the time between two readings, when Limpid gets them");
     draw_time_histogram(pace.intervals(), SafetyLimits::kStaleReading,
-                        "Time between two readings, 1 us to 100 ms, both axes logarithmic; red: "
-                        "over 5 ms, when force is cut.");
+                        "Time between two readings, 1 us to 100 ms. Both axes are logarithmic. "
+                        "Red: longer than 5 ms; then Limpid switches the force off.");
   }
   draw_cost(f, arm, p);
 }
@@ -159,23 +162,24 @@ void DeviceTiming::draw_cost(const DevicePace::Figures& pace, const ArmDescripti
            : assumed ? "not measured"
                      : milliseconds(p.delay * p.tick) + ", as set",
            {},
-           "Delay from a reading to the torque that answers this reading, in addition to the tick. "
-           "limpid identify measures this delay. Without a measurement the walls below assume no "
-           "delay.");
+           "Delay from a reading to the torque computed from it, in addition to the tick. `limpid "
+           "identify` measures this delay. Without a measurement the walls below are computed "
+           "without delay.");
   const TipWall& wall = now_.wall(p.kind);
   const auto pair = [](double now, double prompt) {
     return fmt::format("{:.0f} of {:.0f} N/m", std::min(now, prompt), prompt);
   };
-  read_out("stiffest wall", pair(wall.stiffness, prompt_.wall(p.kind).stiffness), {},
-           fmt::format("Stiffest wall with this delay, of the stiffest wall that the {} law would "
-                       "render without delay. The bound: {}.",
-                       info(p.kind).key, wall.bound)
-               .c_str());
+  read_out(
+      "stiffest wall", pair(wall.stiffness, prompt_.wall(p.kind).stiffness), {},
+      fmt::format("First number: the stiffest wall with this delay. Second number: the stiffest "
+                  "wall that the {} law would render without delay. Reason for the limit: {}.",
+                  info(p.kind).key, wall.bound)
+          .c_str());
   const double T = std::max(p.tick, pace.mean);
   read_out("passive in any hand",
            pair(every_hands_wall(now_.tip, T, now_.loop.delay), prompt_.every_hand), {},
-           "b_d / (T/2 + delay), T the longer of tick and readings: the stiffest wall that a "
-           "plain spring can render and be passive in every hand");
+           "b_d / (T/2 + delay) is the stiffest wall that a plain spring can render and still be "
+           "passive in every hand. T is the longer time of tick and reading.");
 }
 
 }  // namespace limpid

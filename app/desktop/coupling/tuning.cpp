@@ -40,7 +40,7 @@ void Tuning::toggle_twin() {
   run_lanes(before > 1 ? 1 : 2);
   notices_.say(before == 1
                    ? "Two couplings on one hand. The tabs choose the coupling that the sliders set."
-               : before == 2 ? "The twin (second run) has ended. B starts the twin again."
+               : before == 2 ? "The twin (second run) has ended. Key B starts the twin again."
                              : "Only the first run is left. B starts a second run again.");
 }
 

@@ -90,7 +90,8 @@ bool draw_arm(DeviceController& devices, const LiveStage& live, StepState state)
         "you choose its arm.");
     if (noted_button(kBuiltInArmButton)) devices.say_arm({kBuiltInArm, ""});
     tooltip(
-        "assets/devices: paddle.urdf, joystick.urdf or omni.urdf, by the number of its joints.");
+        "Uses paddle.urdf, joystick.urdf or omni.urdf of assets/devices, depending on the number "
+        "of the device's joints.");
     flow(kOpenArmButton);
     const NamedArm open = devices.open_arm();
     if (noted_button(kOpenArmButton)) devices.say_arm(open);
@@ -119,14 +120,14 @@ void draw_axes(DeviceController& devices, StepState state) {
     ImGui::TextWrapped("%s", devices.problem().c_str());
     if (noted_button(kCheckAxes)) devices.start_check();
     tooltip(
-        "Pushes each axis with a tenth of the force to see whether it moves, and which way. Let go "
-        "of the device; Esc stops it.");
+        "Pushes each axis with a tenth of the force to see whether the axis moves, and in which "
+        "direction. Let go of the device. Esc stops the check.");
   }
   end_step();
 }
 
-// Draws measured and assumed values of the device, and the delay that the law reckons with. Returns
-// true if the user wants more measured.
+// Draws measured and assumed values of the device, and the delay that the law calculates with.
+// Returns true if the user wants more measured.
 bool draw_measured(DeviceController& devices, Parameters& p, StepState state) {
   const DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
   const bool found = !notes.arm.empty();
@@ -135,30 +136,31 @@ bool draw_measured(DeviceController& devices, Parameters& p, StepState state) {
              : found                   ? "measured"
                                        : "assumed");
   tooltip(
-      "Measured: by limpid identify, and remembered for this device. Assumed: what the arm's file "
-      "says. Condition (3), \xCE\xB7_min and the walls in the analysis rest on them.");
+      "Measured: values that `limpid identify` measured and saved for this device. Assumed: values "
+      "from the arm's file. Condition (3), \xCE\xB7_min and the walls in the analysis are computed "
+      "from these values.");
   if (state == StepState::later) {
     end_step();
     return false;
   }
   if (notes.torque_scale != 1) {
-    read_out("motors", fmt::format("give {:.3f} of the commanded torque", notes.torque_scale), {},
-             "Measured with a load at the tip. Commands to the motors are scaled by it.");
+    read_out(
+        "motors", fmt::format("give {:.3f} of the commanded torque", notes.torque_scale), {},
+        "Measured with a load at the tip. Commands to the motors are corrected by this factor.");
   }
   const bool wanted = ImGui::Button(found ? "Identify again..." : "Identify...");
   tooltip("Moves the device by itself and measures inertia, friction, weight and delay.");
   if (std::isnan(notes.delay)) {
     read_out("delay", "not measured", {}, "Identify the device to measure the delay.");
   } else {
-    read_out(
-        "delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
-        "Delay from a reading to the torque that answers this reading, in addition to the tick.");
+    read_out("delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
+             "Delay from a reading to the torque computed from it, in addition to the tick.");
     const Parameters with = reckoning_with(p, notes.delay);
     const std::string text =
-        fmt::format("Reckon with {} tick{} of delay", with.delay, with.delay == 1 ? "" : "s");
+        fmt::format("Calculate with {} tick{} of delay", with.delay, with.delay == 1 ? "" : "s");
     if (with.delay != p.delay && ImGui::Button(text.c_str())) p = with;
     tooltip(
-        fmt::format("The predictive law reckons with a delay of {} now (model.delay, in ticks).",
+        fmt::format("The predictive law calculates with a delay of {} now (model.delay, in ticks).",
                     p.delay)
             .c_str());
   }
@@ -172,7 +174,8 @@ void draw_force(const LiveStage& live, const Parameters& p, StepState state) {
   const bool in_place = loop.device_in_place();
   begin_step(state, "Force", in_place ? explain(loop.snapshot().force_state) : "");
   tooltip(
-      "Force is off until the hand holds the device and F arms the force. The force then fades "
+      "Force is off until the hand holds the device and Key F switches the force on. The force "
+      "then fades "
       "in.");
   const std::string words = in_place ? device_words(loop.snapshot().reading) : std::string();
   if (!words.empty()) ImGui::TextWrapped("%s", words.c_str());

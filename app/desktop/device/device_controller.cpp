@@ -39,7 +39,7 @@ void DeviceController::update() {
   if (std::exchange(blocked_, false)) problem_.clear();
   if (!awaits_check()) return connect();
   if (problem_.empty())
-    problem_ = "The device's axes have to be checked before the device may push.";
+    problem_ = "The device's axes must be checked before the device may give force.";
 }
 
 std::string DeviceController::obstacle() const {
@@ -52,15 +52,15 @@ std::string DeviceController::obstacle() const {
     why += fmt::format("{}The device is in use by {}.", why.empty() ? "" : " ", found->in_use_by);
   }
   if (!why.empty()) return why;
-  return must_wait() ? "waits for the end of the recording" : "";
+  return must_wait() ? "the device waits for the end of the recording" : "";
 }
 
 void DeviceController::decide_who_chooses() {
   if (std::exchange(decided_, true) || !waits_.empty()) return;
   if (const std::string other = hub_.go_first(); !other.empty()) {
     wait_for_choice(
-        fmt::format("Another window of Limpid uses a device already ({}). So this window connects "
-                    "to no device by itself.",
+        fmt::format("Another window of Limpid already uses a device ({}). Therefore this window "
+                    "does not connect to a device by itself.",
                     other));
   }
 }
@@ -112,8 +112,8 @@ void DeviceController::say_what_came() {
     here.push_back(found.place.id);
     if (!known_ || std::ranges::find(*known_, found.place.id) != known_->end()) continue;
     if (found.place.id == hub_.in_use()) continue;
-    notices_.say(
-        fmt::format("{} is plugged in. The menu Device lets you use it.", found.place.name));
+    notices_.say(fmt::format("{} is plugged in. To use it, choose it in the menu Device.",
+                             found.place.name));
   }
   known_ = std::move(here);
 }
@@ -124,15 +124,15 @@ void DeviceController::watch() {
   const Arming before = std::exchange(arming_, snapshot.arming);
   if (live_.loop().device_in_place() && arming_ == Arming::tripped && before != Arming::tripped) {
     const std::string words = device_words(snapshot.reading);
-    notices_.say(fmt::format("Force is off: {}.{}{} F arms the force again.",
+    notices_.say(fmt::format("Force is off: {}.{}{} Key F switches the force on again.",
                              explain(snapshot.force_state), words.empty() ? "" : " ", words),
                  true);
   }
   if (!snapshot.connected) {
     problem_ = "not connected";
     notices_.say(
-        "The device is disconnected. Plug the device in again: Limpid then uses the device again, "
-        "at first without force.",
+        "The device is disconnected. If you plug the device in again, Limpid uses it again, at "
+        "first without force.",
         true);
     live_.loop().plug(nullptr);
     return;
@@ -160,11 +160,11 @@ void DeviceController::take_connected() {
     requests_.open(std::move(*ready));
     problem_.clear();
     notices_.say(traits.pushes
-                     ? fmt::format("{} is in the loop{}. Take the device in your hand, then press "
-                                   "F to arm the force.",
+                     ? fmt::format("{} is now part of the control loop{}. Take the device in your "
+                                   "hand, then press F to arm the force.",
                                    traits.name,
                                    traits.made_by.empty() ? "" : ", driven by " + traits.made_by)
-                     : fmt::format("{} leads the hand.", traits.name));
+                     : fmt::format("{} moves the hand.", traits.name));
   } catch (const UncheckedError&) {
     unchecked_ = connecting_id_;
     problem_.clear();
@@ -208,10 +208,10 @@ void DeviceController::follow_check() {
     problem_ = report_of(*check, progress_->end);
     check_failed_ = !check->passed();
     if (!remember_check(*check, hub_.notes(hub_.in_use()))) {
-      return notices_.say("The check of the axes has not passed. The device stays out of the loop.",
-                          true);
+      return notices_.say(
+          "The device's axes did not pass the check. Limpid does not use the device.", true);
     }
-    notices_.say("The device's axes move as the motors push.\n" + problem_);
+    notices_.say("The device's axes move in the direction in which the motors push.\n" + problem_);
     problem_.clear();
     unchecked_.clear();
     save();
@@ -223,7 +223,7 @@ void DeviceController::follow_check() {
 
 void DeviceController::use(const std::string& id) {
   if (live_.recording()) {
-    notices_.say("Stop the recording before changing the device.", true);
+    notices_.say("Stop the recording before you change the device.", true);
     return;
   }
   if (id == hub_.in_use()) return take_turn(id);
@@ -254,7 +254,7 @@ void DeviceController::connect_anew() {
 
 void DeviceController::say_arm(const NamedArm& arm) {
   if (live_.recording()) {
-    return notices_.say("Stop the recording before saying which arm the device is.", true);
+    return notices_.say("Stop the recording before you choose the device's arm.", true);
   }
   cancel_check();
   hub_.say_arm(arm.file, arm.tip, nullptr);

@@ -42,19 +42,19 @@ void hand_choice(DeviceController& devices, const PadChoice& pads, const std::st
 
 void hand_choices(DeviceController& devices, const PadChoice& pads) {
   hand_choice(devices, pads, "virtual arm, by the mouse", "",
-              "A simulated arm; the mouse is the hand on it.");
+              "A simulated arm. You move it with the mouse.");
   bool known = pads.chosen.empty();
   for (const Pad& pad : pads.pads) {
-    hand_choice(
-        devices, pads, "virtual arm, by " + pad.name, pad.id,
-        "Left stick: the hand, in the plane of the picture. Triggers or right stick: nearer "
-        "and farther. A takes hold and lets go, B cuts the force, Y is the next coupling.");
+    hand_choice(devices, pads, "virtual arm, by " + pad.name, pad.id,
+                "Left stick: moves the hand in the plane of the picture. Triggers or right stick: "
+                "move the hand nearer and farther. A: takes hold of the arm or lets it go. B: "
+                "switches the force off. Y: next coupling.");
     known = known || pad.id == pads.chosen;
   }
   if (known) return;
   hand_choice(
       devices, pads, "virtual arm, moved by the gamepad used last", pads.chosen,
-      "The last gamepad is not plugged in. The mouse leads the hand until the gamepad is back.");
+      "The last gamepad is not plugged in. The mouse moves the hand until the gamepad is back.");
 }
 
 void choices(DeviceController& devices, const PadChoice& pads) {
@@ -79,8 +79,9 @@ void choices(DeviceController& devices, const PadChoice& pads) {
 void compensation(const ArmDescription& arm, Parameters& p) {
   if (!section("Compensation", true)) return;
   tooltip(
-      "Forces of the device itself (weight, springs, friction) that the motors can take off the "
-      "hand. This compensation is armed, fades and stops with all other force.");
+      "Forces of the device itself (weight, springs, friction) that the motors can cancel, so that "
+      "the hand does not feel them. This compensation starts, fades and stops together with all "
+      "other force.");
   const CompensationSettings wanted = suggested_compensation(arm);
   CompensationSettings& now = p;
   if (arm.delay && now != wanted) {
@@ -100,7 +101,7 @@ void compensation(const ArmDescription& arm, Parameters& p) {
   const auto where_there = [&](const char* key, bool there, const char* none) {
     if (there) return draw_parameters(p, arm, {key});
     read_out(find_parameter(key)->caption, none, {},
-             "limpid identify measures weight, springs and friction.");
+             "`limpid identify` measures weight, springs and friction.");
   };
   where_there("model.springs", spring > 0, "none known");
   where_there("model.friction", friction > 0, "no friction known");
@@ -152,9 +153,9 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
   ImGui::SameLine();
   changed = ImGui::Checkbox("reverse force", &axis.reversed) || changed;
   tooltip(
-      "Reverses a motor that pushes the wrong way. The check of the axes finds such a motor by "
-      "itself. After a change here the axes are checked again: with the wrong sign the loop is "
-      "unstable.");
+      "Reverses a motor that pushes in the wrong direction. The check of the axes finds such a "
+      "motor by itself. After a change here the axes are checked again, because with the wrong "
+      "sign the loop is unstable.");
   ImGui::SameLine();
   if (ImGui::SmallButton("zero here")) {
     axis.zero += angle / axis.factor();

@@ -11,7 +11,7 @@ namespace limpid {
 
 struct PadChoice {
   const std::vector<Pad>& pads;  // plugged in
-  std::string& chosen;           // the one that leads the hand; empty: the mouse alone
+  std::string& chosen;           // the one that moves the hand; empty: the mouse alone
 };
 
 // Finished changes of a device's notes.

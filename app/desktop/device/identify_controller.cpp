@@ -48,7 +48,8 @@ std::string IdentifyController::why_not() const {
     return "The device has no motors that could move it.";
   }
   if (!live_.loop().device_plugged()) {
-    return devices_.problem().empty() ? "The device is not in the loop." : devices_.problem();
+    return devices_.problem().empty() ? "The device is not part of the control loop."
+                                      : devices_.problem();
   }
   return {};
 }

@@ -64,14 +64,15 @@ void draw_motion(IdentifyController& controller, const ArmDescription& arm) {
   ImGui::TextWrapped("The device moves by itself: %s.", going_on(progress, arm).c_str());
   progress_bar(std::clamp(progress.time / progress.duration, 0.0, 1.0),
                ImGui::GetContentRegionAvail().x);
-  muted("Holding the device stops the identification, too.");
+  muted("If you hold the device, the identification stops, too.");
   if (ImGui::Button("Stop (Esc)")) controller.stop();
 }
 
 void draw_load(IdentifyController& controller, double load) {
   ImGui::TextWrapped("Now fix the %.0f g to the tip, firmly and close to the tip. Then let go.",
                      1e3 * load);
-  if (controller.simulated()) muted("The simulated device has this mass as soon as you go on.");
+  if (controller.simulated())
+    muted("The simulated device has this mass as soon as you press the button.");
   if (noted_button(kGoOn) || accepted()) controller.go_on();
   ImGui::SameLine();
   if (ImGui::Button("Stop (Esc)")) controller.stop();
@@ -138,7 +139,7 @@ bool draw_found(IdentifyController& controller) {
       controller.keep();
       return controller.wrong().empty();
     }
-    tooltip("From now on Limpid uses the values that were found for this device.");
+    tooltip("From now on Limpid uses the values found for this device.");
     ImGui::SameLine();
   }
   if (noted_button(controller.simulated() ? kAgain : "Keep the old values")) controller.stop();
@@ -157,8 +158,9 @@ std::map<std::string, ImVec2> IdentifyDialog::places() {
 
 void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDescription& arm) {
   ImGui::TextWrapped(
-      "The device moves by itself, each joint slowly and then all at once, and shows its inertia, "
-      "friction, weight, springs and delay. Couplings, margins and compensation rest on them.");
+      "The device moves by itself, first each joint slowly, then all joints at once. From this "
+      "motion Limpid computes inertia, friction, weight, springs and delay. Couplings, stability "
+      "margins and compensation use these values.");
   ImGui::Spacing();
   part_slider("of each joint's range", request_.plan.range, 0.05f, 0.9f,
               "How far each joint moves, around the middle of the joint's range.");
@@ -192,8 +194,8 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
   const std::string why_not = controller.why_not();
   muted(!why_not.empty() ? why_not
         : controller.simulated()
-            ? "No device is in use. For a trial Limpid moves a simulated device that differs from "
-              "its file."
+            ? "No device is in use. As a demonstration Limpid moves a simulated device that "
+              "differs from its file."
             : fmt::format("The identification takes about {:.0f} s. Clear the space around the "
                           "device, and let go of the device. Nobody may hold the device meanwhile.",
                           controller.duration(request_.plan)));
@@ -225,7 +227,7 @@ void IdentifyDialog::draw(bool& open, IdentifyController& controller, Down down,
     case Phase::asking: draw_question(controller, arm); break;
     case Phase::moving: draw_motion(controller, arm); break;
     case Phase::load: draw_load(controller, request_.load); break;
-    case Phase::working: ImGui::TextUnformatted("Works out what moved..."); break;
+    case Phase::working: ImGui::TextUnformatted("Computes the values from the motion..."); break;
     case Phase::found: open = !draw_found(controller); break;
   }
   if (!controller.moving()) {  // a motion has to be stopped first

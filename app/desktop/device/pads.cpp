@@ -40,8 +40,8 @@ PadHand::Asked Pads::follow(std::vector<Pad> pads, const Heard& heard, const Cam
     const bool known = std::ranges::find(pads_, pad.id, &Pad::id) != pads_.end();
     if (known || !known_ || pad.id == wanted) continue;
     notices_.say(
-        fmt::format("{} is plugged in. Choose this gamepad under Device, in the panel at the right "
-                    "(F3), to lead the hand.",
+        fmt::format("{} is plugged in. To move the hand with this gamepad, choose it under Device, "
+                    "in the panel at the right (F3).",
                     pad.name));
   }
   pads_ = std::move(pads);
@@ -51,7 +51,7 @@ PadHand::Asked Pads::follow(std::vector<Pad> pads, const Heard& heard, const Cam
   if (!there || heard.device) {
     if (!there && !wanted.empty() && !leading_.empty()) {
       notices_.say(
-          fmt::format("{} is unplugged. The mouse leads the hand until the gamepad is back.",
+          fmt::format("{} is unplugged. The mouse moves the hand until the gamepad is back.",
                       leading_),
           true);
     }
@@ -61,10 +61,10 @@ PadHand::Asked Pads::follow(std::vector<Pad> pads, const Heard& heard, const Cam
   }
   if (leading_ != pad->name) {
     leading_ = pad->name;
-    notices_.say(
-        fmt::format("{} leads the hand: left stick, triggers nearer and farther, A takes "
-                    "hold or lets go, B cuts the force, Y is the next coupling, X the magnet.",
-                    leading_));
+    notices_.say(fmt::format(
+        "{} moves the hand. Left stick: moves the hand. Triggers: move it nearer and farther. A: "
+        "takes hold or lets go. B: switches the force off. Y: next coupling. X: magnet.",
+        leading_));
   }
   const PadReading now = heard.listens ? pad->now : PadReading{.b = pad->now.b};
   const Vec3 tip =

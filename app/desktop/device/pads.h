@@ -1,4 +1,4 @@
-// Gamepads that are plugged in, as GLFW knows them, and the one that leads the hand.
+// Gamepads that are plugged in, as GLFW knows them, and the one that moves the hand.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ class Pads {
   Pads(const Settings& settings, Notices& notices, LiveStage& live)
       : settings_(settings), notices_(notices), live_(live) {}
 
-  // Takes the present gamepads, `dt` [s] after the last call. The chosen one leads the hand as seen
+  // Takes the present gamepads, `dt` [s] after the last call. The chosen one moves the hand as seen
   // through the camera, unless a `device` does, or the window does not listen. Returns its other
   // requests.
   struct Heard {

@@ -94,7 +94,7 @@ void ExperimentsPanel::take() {
     }
   } catch (const std::exception& e) {
     if (stopping_) {
-      notices_.say("Stopped; finished trials are kept and are not run again.");
+      notices_.say("The experiments have stopped. Finished trials are kept and are not run again.");
     } else {
       notices_.say(fmt::format("{}: {}", current_->name, e.what()), true);
     }
@@ -150,12 +150,14 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
       chosen = draw_verdict(found->second);
     } else {
       ImGui::TextWrapped(
-          "The paper's experiments, then those of the predictive law and of things that move. Each "
-          "is run by the ordinary loop with recorded and seeded hands. Figures, tables, verdicts "
-          "and every trial are kept in %s.",
+          "The list shows the paper's experiments, then the experiments on the predictive law and "
+          "on moving objects. Each experiment runs in the ordinary loop, with recorded hand "
+          "motions or with motions computed from a fixed seed. Figures, tables, verdicts and all "
+          "trials are saved in %s.",
           experiments_dir().c_str());
       ImGui::Spacing();
-      ImGui::TextWrapped("Run an experiment at the left. Its figure and checks then appear here.");
+      ImGui::TextWrapped(
+          "Run an experiment from the list at the left. Its figure and checks then appear here.");
     }
     ImGui::EndChild();
   }
@@ -262,7 +264,7 @@ void ExperimentsPanel::draw_figure(const PictureTexture& figure) {
   ImGui::Image(figure.id(), {width, width * figure.height() / figure.width()});
   note_place(kFigure);
   if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
-  tooltip("A click shows the figure as large as the window.");
+  tooltip("Click to show the figure in the size of the window.");
   if (ImGui::IsItemClicked()) ImGui::OpenPopup(kFigure);
   const ImGuiViewport& window = *ImGui::GetMainViewport();
   const ImVec2 most{0.96f * window.WorkSize.x, 0.96f * window.WorkSize.y};

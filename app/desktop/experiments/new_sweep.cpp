@@ -130,7 +130,7 @@ void NewSweepDialog::begin(const SweepBasis& basis) {
     hands_.push_back({"recorded hand: " + stem, name});
   }
   for (const fs::path& file : newest_recordings()) add_recording(file);
-  hands_.push_back({"a tap on a wall of its own, 4 N, without the scene", ""});
+  hands_.push_back({"a tap with 4 N on a wall of its own, without the scene", ""});
   if (first_.field != nullptr) return;  // as it was left
   const auto measures = measure_table();
   measure_ = static_cast<std::size_t>(
@@ -206,7 +206,9 @@ void NewSweepDialog::draw_values(Axis& axis, const char* id) {
   note_place(fmt::format("{} count", id).c_str());
   if (axis.draft.from > 0) {
     ImGui::Checkbox("spaced evenly in ratio", &axis.draft.logarithmic);
-    tooltip("On: values as 1, 10, 100. Off: values as 1, 50, 100.");
+    tooltip(
+        "On: values like 1, 10, 100 (equal ratios). Off: values like 1, 50, 100 (equal "
+        "differences).");
   }
   ImGui::PopID();
 }
@@ -290,8 +292,8 @@ void NewSweepDialog::draw(bool& open, const SweepBasis& basis, SweepController& 
   }
   if (!std::exchange(shown_, true)) begin(basis);
   ImGui::TextWrapped(
-      "A sweep makes many runs in the background, over one or two settings, and draws a map of the "
-      "results. Arm, scene and all other settings are the present ones.");
+      "A sweep makes many runs in the background with different values of one or two settings, and "
+      "draws a map of the results. Arm, scene and all other settings stay as they are now.");
   ImGui::Spacing();
   if (ImGui::BeginTable("asked", 2)) {
     const float em = ImGui::GetFontSize();
@@ -300,12 +302,14 @@ void NewSweepDialog::draw(bool& open, const SweepBasis& basis, SweepController& 
     label("Vary", "The setting from left to right of the map");
     choose_field(first_, "##first", false);
     draw_values(first_, "first");
-    label("and", "The setting from bottom to top of the map, if any");
+    label("and", "The setting on the map's vertical axis, if there is a second setting");
     choose_field(second_, "##second", true);
     draw_values(second_, "second");
-    label("Measure", "The measure of each run. Limpid always notes whether a run diverged.");
+    label("Measure",
+          "The value that is computed for each run. Limpid also notes for each run whether it "
+          "diverged.");
     draw_measure();
-    label("Hand", "The motion that leads the device, the same in each run");
+    label("Hand", "The motion that moves the device, the same in each run");
     draw_hand();
     label("Length", "Length of each run. 0: as long as the hand's path.");
     ImGui::SetNextItemWidth(5 * em);
@@ -323,7 +327,7 @@ void NewSweepDialog::draw_end(const SweepBasis& basis, SweepController& controll
   const SweepDraft wanted = draft(basis);
   std::string wrong = complaint_;
   if (wrong.empty() && !wanted.hand.empty()) wrong = basis.why_not_scene;
-  if (wrong.empty() && controller.runner().busy()) wrong = "Another sweep is under way.";
+  if (wrong.empty() && controller.runner().busy()) wrong = "Another sweep is running.";
   const bool may = wrong.empty();
   if (may && started_ == checked_) wrong = controller.why_not_started();
   ImGui::Spacing();

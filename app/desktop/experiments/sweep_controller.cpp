@@ -107,10 +107,11 @@ void compare(const OpenedSweep& sweep, std::uint64_t point, std::optional<double
       differences(plan, again, std::span(sweep.table.values).subspan(point * width, width));
   loaded.bad = !other.empty();
   if (other.empty()) {
-    loaded.said = name + ". The result equals the table to the last bit.";
+    loaded.said = name + ". The result is exactly the same as in the table.";
   } else if (sweep.build != hex(build_digest())) {
-    loaded.said = fmt::format("{}. Another build of limpid ({}) made the table: {}.", name,
-                              sweep.build, other);
+    loaded.said = fmt::format(
+        "{}. The result differs from the table, which another build of limpid ({}) made: {}.", name,
+        sweep.build, other);
   } else {
     loaded.said = fmt::format("{}. The result differs from the table: {}.", name, other);
   }
@@ -143,7 +144,7 @@ bool SweepController::take_look() {
   if (!found->sweep) return false;
   const bool fresh = !asked_.empty();
   if (fresh && found->sweep->plan->axes.empty()) {
-    throw FileError(asked_.string() + ": its plan has no axis, so that there is no map");
+    throw FileError(asked_.string() + ": the sweep's plan has no axis, so there is no map");
   }
   asked_.clear();
   sweep_ = std::move(found->sweep);

@@ -372,14 +372,14 @@ void draw_choosers(const OpenedSweep& sweep, MapChoice& choice) {
   const std::size_t before = choice.x;
   ImGui::SetNextItemWidth(width);
   choice.x = choose("##x", choice.x, plan.axes.size(), axis_name);
-  tooltip("The axis from left to right");
+  tooltip("The setting on the map's horizontal axis");
   if (!choice.y) return;
   if (*choice.y == choice.x) choice.y = before;
   ImGui::SameLine();
   label("and");
   ImGui::SetNextItemWidth(width);
   const std::size_t y = choose("##y", *choice.y, plan.axes.size(), axis_name);
-  tooltip("The axis upwards");
+  tooltip("The setting on the map's vertical axis");
   if (y == choice.x) choice.x = *choice.y;
   choice.y = y;
 }
@@ -539,13 +539,12 @@ void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
   } else if (sweep.build != hex(build_digest())) {
     ImGui::TextColored(
         colour_vector(colours.broken),
-        "Made by another build of limpid (%s): a point that is run again may differ.",
+        "This table is of another build of limpid (%s): a point run again may differ.",
         sweep.build.c_str());
   } else {
-    ImGui::TextColored(
-        colour_vector(colours.muted),
-        "Dots mark what was computed. A click runs that point again and plays it; F6 "
-        "comes back here.");
+    ImGui::TextColored(colour_vector(colours.muted),
+                       "Dots mark computed points. A click runs the point again and plays it; F6 "
+                       "returns to the map.");
   }
   ImGui::PopClipRect();
 }

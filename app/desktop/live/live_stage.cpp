@@ -84,8 +84,8 @@ void LiveStage::drop_pictures() {
 }
 
 std::string LiveStage::why_time_is_fixed() const {
-  return loop().device_in_place() ? "A real device is in the arm's place. The simulation cannot be "
-                                    "paused with a real device."
+  return loop().device_in_place() ? "A real device is used instead of the virtual arm. The "
+                                    "simulation cannot be paused with a real device."
                                   : "";
 }
 
@@ -104,23 +104,23 @@ std::string LiveStage::why_no_magnet() const {
 
 void LiveStage::toggle_magnet() {
   controls().magnet = !controls().magnet && why_no_magnet().empty();
-  notices_.say(
-      controls().magnet
-          ? "The magnet is on. An object that the tip touches sticks to it. Press H to let it go."
-          : "The magnet is off.");
+  notices_.say(controls().magnet ? "The magnet is on. An object that the tip touches sticks to the "
+                                   "tip. Press H to let the object go."
+                                 : "The magnet is off.");
 }
 
 void LiveStage::start_over() {
   if (recording()) {
-    notices_.say("Stop the recording before starting over.", true);
+    notices_.say("Stop the recording before you start over.", true);
     return;
   }
   controls().grab = controls().magnet = false;
   controls().pull = {};
   ++controls().resets;
   const bool off = loop().device_in_place() || !force_armed();
-  notices_.say(off ? "Started over, at rest and without force. F arms the force."
-                   : "Started over, at rest.");
+  notices_.say(off ? "The simulation has started over, at rest and without force. Key F switches "
+                     "the force on."
+                   : "The simulation has started over, at rest.");
 }
 
 void LiveStage::let_go(std::unique_ptr<Device> device) {
@@ -171,9 +171,10 @@ void LiveStage::note(const Moment& at, const std::string& text) {
     notices_.say("The recording has ended. The mark is only in the plots, not in the recording.");
   }
   if (stage_->history.marks().size() == History::kMostMarks) {
-    notices_.say_once(fmt::format("The plots show the newest {} marks only; a recording keeps all.",
-                                  History::kMostMarks),
-                      false);
+    notices_.say_once(
+        fmt::format("The plots show only the newest {} marks. A recording keeps all marks.",
+                    History::kMostMarks),
+        false);
   }
   stage_->history.mark_at(at.time, text, kNoteMark);
 }
@@ -193,7 +194,8 @@ void LiveStage::watch_loop() {
   const LoopStatus now = loop().status();
   if (was_running_ && !now.running) {
     notices_.say(
-        fmt::format("The loop has stopped, without force: {}. Start Limpid again.", now.failure),
+        fmt::format("The loop has stopped, and the force is off. Reason: {}. Start Limpid again.",
+                    now.failure),
         true);
   }
   was_running_ = now.running;

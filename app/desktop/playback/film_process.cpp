@@ -148,7 +148,8 @@ bool film_beside(const std::filesystem::path& session, const std::filesystem::pa
   }
   if (process.succeeded()) return true;
   if (asked) return false;
-  throw std::runtime_error(said.empty() ? "the video's process ended before its time" : said);
+  throw std::runtime_error(said.empty() ? "the process that makes the video ended too early"
+                                        : said);
 }
 
 }  // namespace limpid

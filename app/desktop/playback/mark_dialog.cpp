@@ -34,7 +34,7 @@ MarkAnswer MarkDialog::draw(bool& open, const std::string& when, const std::stri
   ImGui::PushStyleColor(
       ImGuiCol_Text, colour_vector(too_long ? current_palette().broken : current_palette().muted));
   if (too_long) {
-    ImGui::Text("%zu bytes; at most %zu are kept", text_.size(), kMarkLength);
+    ImGui::Text("%zu bytes; allowed: at most %zu", text_.size(), kMarkLength);
   } else {
     ImGui::TextUnformatted(when.c_str());
   }

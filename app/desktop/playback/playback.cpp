@@ -50,7 +50,7 @@ void Playback::close() {
 void Playback::take_over() {
   last_ = left_ = shown_->file();
   left_at_ = shown_->player().time();
-  notices_.say("The arm is yours. P gives it back to the story.");
+  notices_.say("You move the arm now. P continues the story.");
   close();
 }
 
@@ -97,7 +97,7 @@ void Playback::recover_leftovers(const fs::path& folder) {
     if (!entry.path().string().ends_with(".h5.part")) continue;
     try {
       const Recovered recovered = recover_session(entry.path(), false);
-      recovered_ = fmt::format("Recovered {} ({} ticks) from a recording that was cut off.",
+      recovered_ = fmt::format("Recovered {} ({} ticks) from a recording that was interrupted.",
                                recovered.file.filename().string(), recovered.rows);
       last_ = recovered.file;
     } catch (const std::exception& e) {
@@ -143,7 +143,7 @@ bool Playback::take_results() {
     shown_->show(std::move(*again));
     if (end.diverged) {
       notices_.say(
-          fmt::format("The re-run is unstable from t = {:.3f} s on: {}. All of it is shown.",
+          fmt::format("The re-run is unstable from t = {:.3f} s on: {}. The whole re-run is shown.",
                       end.diverged_at, end.why),
           true);
     }

@@ -60,7 +60,7 @@ History history_of(const Session& session, const std::string& where, const ArmDe
 
 LoadedSession load_session(const fs::path& file) {
   auto session = std::make_shared<const Session>(read_session(file));
-  if (session->size() == 0) throw FileError(file.string() + ": holds no rows");
+  if (session->size() == 0) throw FileError(file.string() + ": the recording has no rows");
   RunPlan world = replay(*session, file.string(), {});
   const auto lanes = session->lane_rows();
   std::vector<StoryStep> steps = told_in(*session, file).steps;

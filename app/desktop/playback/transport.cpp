@@ -105,12 +105,13 @@ std::optional<std::size_t> timeline(PlayedSession& session, float right) {
     const Mark& at = session.marks()[*mark];
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) player.seek(session.time_of(at));
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) changed = mark;
-    tooltip(fmt::format("{}\nA click goes there; a right click renames or removes it.", at.text)
+    tooltip(fmt::format("{}\nA click goes to this mark. A right click renames or removes the mark.",
+                        at.text)
                 .c_str());
   } else {
     tooltip(
-        "Drag to any moment; left and right arrow step by a tick, with Shift by 0.1 s. T sets a "
-        "mark.");
+        "Drag to go to any moment. The left and right arrow keys go one tick back or forward, with "
+        "Shift 0.1 s. T sets a mark.");
   }
   ImGui::SameLine();
   return changed;
@@ -118,10 +119,9 @@ std::optional<std::size_t> timeline(PlayedSession& session, float right) {
 
 void rerun_controls(Playback& playback, const Act& act) {
   if (!playback.rerunning()) {
-    if (button(
-            "Re-run",
-            "Let the recorded hand drive a new simulation under the present settings and show it "
-            "beside the recording (E).")) {
+    if (button("Re-run",
+               "Runs a new simulation with the recorded hand motion and the present settings, and "
+               "shows it beside the recording (E).")) {
       act("session.rerun");
     }
     return;
@@ -159,7 +159,7 @@ std::optional<std::size_t> playback_controls(Playback& playback, const Act& act)
     if (button("<", "One tick back (left arrow)")) player.step(-1);
     if (button(">", "One tick forward (right arrow)")) player.step(1);
   }
-  if (with_loop && button("Loop", "Begin again at the end (L)", player.loop)) {
+  if (with_loop && button("Loop", "At the end, playback begins again (L)", player.loop)) {
     player.loop = !player.loop;
   }
   if (with_speed) {
@@ -176,7 +176,7 @@ std::optional<std::size_t> playback_controls(Playback& playback, const Act& act)
     ImGui::TextUnformatted(clock.c_str());
     ImGui::SameLine();
   }
-  if (button("Back to live", "Leaves the recording. You lead the device again (Backspace).")) {
+  if (button("Back to live", "Closes the recording. You move the device again (Backspace).")) {
     act("session.back_to_live");
   }
   return changed;
@@ -186,8 +186,8 @@ void recording_controls(const LiveStage& live, double tick, const Act& act) {
   const LiveLoop& loop = live.loop();
   const bool recording = loop.recording();
   if (button(recording ? "Stop" : "Record",
-             "R starts and stops recording every tick. While an object is selected, R turns the "
-             "object, and Ctrl+R records.",
+             "R starts or stops a recording of every tick. While an object is selected, R turns "
+             "the object, and Ctrl+R records.",
              recording, true, "Record")) {
     act("session.record");
   }
@@ -197,7 +197,7 @@ void recording_controls(const LiveStage& live, double tick, const Act& act) {
     ImGui::TextUnformatted(clock_text(seconds).c_str());
     tooltip(loop.recorder()->out().c_str());
     ImGui::SameLine();
-  } else if (button("Play", "Plays the last recording, or opens one (P).")) {
+  } else if (button("Play", "Plays the last recording, or opens a recording (P).")) {
     act("session.play");
   }
   const std::string& trouble = live.last_recording().trouble;
@@ -216,7 +216,7 @@ void time_controls(LiveStage& live, const Act& act) {
     act("loop.pause");
   }
   if (paused) {
-    if (button(">", "One tick forward (right arrow), with Shift ten ticks")) act("loop.step");
+    if (button(">", "One tick forward (right arrow), or ten ticks with Shift")) act("loop.step");
     return;
   }
   int& slow = live.controls().slow;
@@ -228,11 +228,11 @@ void time_controls(LiveStage& live, const Act& act) {
 void live_controls(LiveStage& live, double tick, double& plot_length, const Act& act) {
   recording_controls(live, tick, act);
   if (button("Open...", "Choose a recorded session (Ctrl+O).")) act("session.open");
-  if (button("A/B", "To the next coupling law, without a jump (C).")) {
+  if (button("A/B", "Changes to the next coupling law, without a jump (C).")) {
     act("coupling.next");
   }
   PlotGroup& group = live.stage().group;
-  if (button(group.following() ? "Freeze plots" : "Follow", "Holds the plots or lets them run (X).",
+  if (button(group.following() ? "Freeze plots" : "Follow", "Stops or continues the plots (X).",
              !group.following())) {
     act("plots.freeze");
   }
@@ -245,9 +245,9 @@ void live_controls(LiveStage& live, double tick, double& plot_length, const Act&
   tooltip("How much time the plots show, 1 to 60 s");
   ImGui::SameLine();
   time_controls(live, act);
-  if (button(
-          "Start over",
-          "Device and proxy at rest in the middle; a real device's force goes off (Backspace).")) {
+  if (button("Start over",
+             "Puts device and proxy at rest in the middle. The force of a real device is switched "
+             "off (Backspace).")) {
     act("device.start_over");
   }
 }

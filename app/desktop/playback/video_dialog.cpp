@@ -90,8 +90,8 @@ void VideoDialog::draw_span(const PlayedSession& session) {
     ImGui::TextUnformatted(label);
     ImGui::PopID();
   };
-  time("from", "here", "Where playback stands", request_.from);
-  time("to", "here", "Where playback stands", to_);
+  time("from", "here", "The present time of the playback", request_.from);
+  time("to", "here", "The present time of the playback", to_);
   if (!std::isfinite(request_.from)) request_.from = 0;
   if (!std::isfinite(to_)) to_ = whole;
   request_.from = std::clamp(request_.from, 0.0, std::max(0.0, whole - kShortest));
@@ -119,8 +119,8 @@ std::optional<VideoRequest> VideoDialog::draw(bool& open, const Playback& playba
   ImGui::Spacing();
   const std::filesystem::path out = video_of(session->file(), request_.kind, sessions_dir());
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
-  ImGui::TextWrapped("%.1f s, %.0f pictures, drawn at full quality beside the window: %s", length(),
-                     std::max(1.0, std::round(length() * *request_.fps)), out.c_str());
+  ImGui::TextWrapped("%.1f s, %.0f pictures, drawn at full quality in the background. File: %s",
+                     length(), std::max(1.0, std::round(length() * *request_.fps)), out.c_str());
   ImGui::PopStyleColor();
   ImGui::Spacing();
   std::optional<VideoRequest> asked;

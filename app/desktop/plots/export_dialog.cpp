@@ -81,7 +81,7 @@ void ExportDialog::draw_stretch(const Stage& stage) {
   const auto range = stage.group.range();
   if (!range || (!is_drawn(order_.what) && order_.what != What::table)) return;
   const std::string label =
-      fmt::format("only the selected stretch, {:.3f} to {:.3f} s", range->start, range->stop);
+      fmt::format("only the selected time, {:.3f} to {:.3f} s", range->start, range->stop);
   ImGui::Checkbox(label.c_str(), &order_.stretch);
   note_place("stretch");
 }
@@ -173,7 +173,7 @@ std::optional<ExportOrder> ExportDialog::draw(bool& open, const Stage& stage, st
   if (!video) {
     entered = ImGui::InputText("file", &file_, ImGuiInputTextFlags_EnterReturnsTrue);
   } else {
-    ImGui::TextDisabled("Length, size and speed are asked for next.");
+    ImGui::TextDisabled("The next dialog asks for length, size and speed.");
   }
   ImGui::PopItemWidth();
   const bool no_plot = stage.plots.empty() && (is_drawn(order_.what) || order_.what == What::table);
@@ -183,7 +183,7 @@ std::optional<ExportOrder> ExportDialog::draw(bool& open, const Stage& stage, st
   const bool there = !video && wrong.empty() && fs::exists(file, none);
   if (!wrong.empty() || there) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
-    ImGui::TextWrapped("%s", wrong.empty() ? "This file is there already." : wrong.c_str());
+    ImGui::TextWrapped("%s", wrong.empty() ? "This file already exists." : wrong.c_str());
     ImGui::PopStyleColor();
   }
   ImGui::BeginDisabled(!wrong.empty());

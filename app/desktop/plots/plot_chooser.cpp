@@ -137,7 +137,7 @@ bool PlotChooser::draw(bool& open, PlotChoice& choice, const TraceChannels& chan
   if (done_) open = false;
   ImGui::SameLine();
   if (ImGui::Button("None", {button, 0})) choice.channels.clear();
-  tooltip("Takes all channels out of the plot.");
+  tooltip("Removes all channels from the plot.");
   ImGui::SameLine();
   const bool remove = ImGui::Button("Remove plot", {1.4f * button, 0});
   if (remove) open = false;
@@ -152,12 +152,12 @@ void PlotChooser::draw_kinds(PlotChoice& choice, const TraceChannels& channels) 
     const char *label, *help;
   };
   constexpr std::array kKinds{
-      Kind{PlotKind::time, "over time", "The channels over time."},
+      Kind{PlotKind::time, "over time", "The channels against time."},
       Kind{PlotKind::cross, "against a channel",
            "The channels against another channel. Choose this channel with \"along x\" in the list "
            "below."},
       Kind{PlotKind::spectrum, "spectrum",
-           "Amplitude over frequency of the stretch of time that the plots show."}};
+           "Amplitude against frequency, for the time that the plots show."}};
   ImGui::PushItemWidth(-1);
   const PlotChoice unnamed{
       .kind = choice.kind, .across = choice.across, .channels = choice.channels};
@@ -179,7 +179,7 @@ void PlotChooser::draw_kinds(PlotChoice& choice, const TraceChannels& channels) 
 void PlotChooser::draw_filter(PlotChoice& choice, const TraceChannels& channels) {
   ImGui::PushItemWidth(-1);
   const bool entered = ImGui::InputTextWithHint(
-      "##filter", "filter, as torque 2; Enter: first channel, Enter again: close", &filter_,
+      "##filter", "filter, e.g. torque 2; Enter: first channel, again: close", &filter_,
       ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::PopItemWidth();
   done_ = entered && filter_.empty();
@@ -218,7 +218,7 @@ void PlotChooser::draw_channel(PlotChoice& choice, const ChannelInfo& channel,
   note_place(channel.key.c_str());
   if (ImGui::BeginDragDropSource()) {
     ImGui::SetDragDropPayload(kDraggedChannel, channel.key.data(), channel.key.size());
-    ImGui::TextUnformatted((channel.label + ": into another plot").c_str());
+    ImGui::TextUnformatted((channel.label + ": drop it into another plot").c_str());
     ImGui::EndDragDropSource();
   }
   tooltip((channel.help + "\n" + channel.key + "\nCan be dragged into any plot.").c_str());

@@ -124,8 +124,9 @@ std::string_view edit_force(JointForce& force, bool turns) {
   std::string_view what = edit_fields(kForceFields, force, turns);
   if (const auto detent = edit_fields(kDetentFields, force, turns); !detent.empty()) what = detent;
   if (!force.travel.empty()) {
-    read_out("force over travel", fmt::format("{} points", force.travel.size()), {},
-             "The scene's file sets it. This force is added to those of spring and detent.");
+    read_out("force against displacement", fmt::format("{} points", force.travel.size()), {},
+             "The scene's file sets these points. This force is added to the forces of spring and "
+             "detent.");
   }
   return what;
 }
@@ -140,8 +141,8 @@ std::string_view edit_joint(Body& body, const Scene& scene, std::size_t place) {
     what = "to";
   }
   if (has_axis(joint) && drag3("Axis x, y, z", joint.axis, 0.01, -1, 1, "%.3f",
-                               "The object slides along this axis or turns about this axis. "
-                               "Directions are the world's, at the start.")) {
+                               "The object slides along this axis or turns about this axis. The "
+                               "axis is given in the world's directions, as it is at the start.")) {
     what = "axis";
   }
   Vec3 point = 1e3 * joint.point;
@@ -199,7 +200,7 @@ void draw_spring(Document& document, std::size_t place) {
     std::string_view what;
     const bool changed = edit_spring(spring, document.scene(), what);
     const bool remove = ImGui::Button("Remove spring", {-1, 0});
-    tooltip("Ctrl+Z brings it back.");
+    tooltip("Ctrl+Z brings the spring back.");
     if (remove) {
       if (document.may_edit()) document.editor().remove_spring(place);
     } else if (changed && document.may_edit()) {

@@ -100,7 +100,7 @@ void Document::open(const ArmDescription& arm, SceneDocument document, MeshModel
 std::string Document::why_fixed() const {
   std::string why = why_fixed_();
   if (why.empty() && loader_.opening_scene()) {
-    why = "Wait until the scene is there, or cancel its loading.";
+    why = "Wait until the scene is loaded, or cancel the loading.";
   }
   return why;
 }
@@ -136,10 +136,10 @@ void Document::add_model(LoadedModel loaded, const Workplace& at) {
   const std::size_t triangles = mesh.triangles->triangles();
   const double centimetres = 100 * mesh.size() * bounds.sizes().maxCoeff();
   editor_.add(std::move(loaded.mesh), std::move(loaded.file), loaded.model);
-  std::string text =
-      fmt::format("Added {}: {} triangles, {}, {:.3g} cm{}. Ctrl+Z removes it.",
-                  editor_.selected_object()->name, with_commas(triangles), text_of(loaded.axes),
-                  centimetres, scale == 1 ? "" : fmt::format(", scaled by {:.3g}", scale));
+  std::string text = fmt::format(
+      "Added {}: {} triangles, {}, largest size {:.3g} cm{}. Ctrl+Z removes the object.",
+      editor_.selected_object()->name, with_commas(triangles), text_of(loaded.axes), centimetres,
+      scale == 1 ? "" : fmt::format(", scaled by {:.3g}", scale));
   for (const std::string& warning : loaded.warnings) text += "\n" + warning;
   notices_.say(text);
 }
@@ -159,7 +159,7 @@ void Document::remove_selected() {
   const bool moving = std::ranges::any_of(
       scene().objects, [](const Object& object) { return object.body.has_value(); });
   notices_.say(fmt::format("Removed {}. {}Ctrl+Z brings the object back.{}", name, also,
-                           moving ? " Objects that move begin again where they start." : ""));
+                           moving ? " Objects that move are back at their start positions." : ""));
 }
 
 void Document::duplicate_selected() {

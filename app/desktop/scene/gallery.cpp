@@ -97,9 +97,8 @@ fs::path Gallery::draw(bool& open) {
     ImGui::SetKeyboardFocusHere();
   }
   ImGui::SetNextItemWidth(-1);
-  const bool entered =
-      ImGui::InputTextWithHint("##part", "a part of a name, or of what it is about", &typed_,
-                               ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered = ImGui::InputTextWithHint("##part", "a part of a name or of its description",
+                                                &typed_, ImGuiInputTextFlags_EnterReturnsTrue);
   if (ImGui::IsItemEdited()) keys_.forget();
   const auto own = cards_with(typed_, own_), shipped = cards_with(typed_, shipped_);
   const float gap = ImGui::GetStyle().ItemSpacing.x;
@@ -129,7 +128,8 @@ fs::path Gallery::draw(bool& open) {
   if (entered && chosen.empty() && !typed_.empty() && first != nullptr) chosen = first->scene;
   close_button("Close (Esc)", open);
   ImGui::SameLine();
-  ImGui::TextDisabled("Arrows and Enter choose a scene; Enter after a name opens the first.");
+  ImGui::TextDisabled(
+      "Arrow keys and Enter choose a scene. Enter after a name opens the first scene.");
   ImGui::EndPopup();
   if (!chosen.empty()) open = false;
   return chosen;

@@ -80,7 +80,7 @@ std::string PartsEditor::edit(Object& object) {
       }
       const bool remove = ImGui::Button("Remove part", {-1, 0});
       note_place("Remove part");
-      tooltip("Ctrl+Z brings it back.");
+      tooltip("Ctrl+Z brings the part back.");
       if (remove) {
         what = fmt::format("part {} of {} removed", i + 1, parts.size());
         parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(i));

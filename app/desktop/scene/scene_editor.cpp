@@ -50,7 +50,7 @@ std::string let_go(Scene& scene, const std::string& name) {
   for (Object& object : scene.objects) {
     if (!object.body || !object.body->joint || object.body->joint->to != name) continue;
     object.body->joint->to.clear();
-    said += fmt::format("{}'s joint now holds to the world. ", object.name);
+    said += fmt::format("The joint of {} now connects to the world. ", object.name);
   }
   const auto springs = std::erase_if(scene.springs, [&](const BodySpring& spring) {
     return spring.between[0] == name || spring.between[1] == name;
@@ -150,7 +150,7 @@ void SceneEditor::set_gravity(const Vec3& gravity) {
 void SceneEditor::add_spring(BodySpring spring) {
   if (scene().springs.size() >= kMostSprings) {
     throw std::runtime_error(
-        fmt::format("A scene holds at most {} springs; remove one first.", kMostSprings));
+        fmt::format("A scene holds at most {} springs; remove a spring first.", kMostSprings));
   }
   hold(spring);
   change("", [&](World& world) { world.document.scene.springs.push_back(std::move(spring)); });
@@ -188,7 +188,7 @@ void SceneEditor::add(Object object, ModelFile file, std::shared_ptr<const Model
 void SceneEditor::insert(Object object, std::shared_ptr<const Model> model, const ModelFile* file) {
   if (scene().objects.size() >= kMostContacts) {
     throw std::runtime_error(
-        fmt::format("A scene holds at most {} objects; remove one first.", kMostContacts));
+        fmt::format("A scene holds at most {} objects; remove an object first.", kMostContacts));
   }
   hold(object);
   object.name = free_name(object.name, std::nullopt);

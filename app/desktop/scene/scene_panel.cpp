@@ -56,10 +56,10 @@ using namespace scene_limits;
 
 constexpr const char* kPositionLabel = "Position x, y, z [mm]";
 
-bool position(
-    Pose& pose, const char* label,
-    const char* help =
-        "Forward, left and up from the arm's base. Of an object that moves: where it starts.") {
+bool position(Pose& pose, const char* label,
+              const char* help =
+                  "Distances forward, left and up from the arm's base. For an object that moves, "
+                  "this is the position at the start.") {
   Vec3 millimetres = 1e3 * pose.translation();
   if (!drag3(label, millimetres, kMillimetreSpeed, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
              "%.1f", help)) {
@@ -71,7 +71,7 @@ bool position(
 
 bool choose_material(Material& material) {
   bool changed = false;
-  caption("Material", "A usual material to begin with. The fields below show its values.");
+  caption("Material", "A usual material as a starting point. The fields below show its values.");
   const UsualMaterial* const present = usual_material(material);
   if (!ImGui::BeginCombo("##material", present ? present->name : "its own")) return false;
   for (const UsualMaterial& each : kUsualMaterials) {
@@ -105,7 +105,7 @@ bool choose_axes(Mesh& mesh) {
     }
     ImGui::EndCombo();
   }
-  caption("Axis up", "Which of the file's axes points up when nothing is turned.");
+  caption("Axis up", "The axis of the file that points up when no rotation is set.");
   int axis = mesh.y_up ? 0 : 1;
   if (ImGui::Combo("##up", &axis, "y\0z\0")) {
     mesh.y_up = axis == 0;
@@ -337,12 +337,12 @@ void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed,
   draw_springs(document);
   double tip = 1e3 * editor.scene().tip_radius;
   if (drag_number("Tip radius", tip, 0.05, 0, 50, "%.2f mm",
-                  "The ball at the arm's tip that touches; 0 is a point.")) {
+                  "Radius of the ball at the arm's tip that touches things; 0 is a point.")) {
     editor.set_tip_radius(1e-3 * tip);
   }
   const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   if (ImGui::Button("Save scene", {width, 0})) act("scene.save");
-  tooltip("Ctrl+S. A scene that came with Limpid is saved as your own.");
+  tooltip("Ctrl+S. A scene that came with Limpid is saved as your own scene.");
   ImGui::SameLine();
   if (ImGui::Button("Gallery...", {width, 0})) act("scene.gallery");
   tooltip("Ctrl+G: scenes to open, with pictures.");

@@ -71,7 +71,7 @@ void KeptScenes::discard() {
   if (error) {
     notices_.say(fmt::format("{}: {}", file.string(), error.message()), true);
   } else {
-    notices_.say(fmt::format("{} is gone.", file.filename().string()));
+    notices_.say(fmt::format("{} was deleted.", file.filename().string()));
   }
 }
 

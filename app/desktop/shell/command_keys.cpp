@@ -18,24 +18,24 @@ struct Hint {
   const char *with, *what;
 };
 constexpr std::array kBefore{
-    Hint{"left drag at the tip",
-         "pull the arm, at the depth of what is under the mouse; turn the wheel meanwhile for "
-         "nearer and farther; Shift keeps the depth"},
+    Hint{"drag the tip with the left button",
+         "pull the arm, at the depth of the object under the mouse; turn the wheel at the same "
+         "time to move nearer or farther; Shift keeps the depth"},
     Hint{"Ctrl+left drag",
-         "pull what moves, without the arm; turn the wheel meanwhile for nearer and farther"},
+         "pull a movable object without the arm; turn the wheel at the same time to move it nearer "
+         "or farther"},
     Hint{"left drag elsewhere, right drag", "turn the camera"},
     Hint{"middle drag, Shift+right drag", "move the camera"},
     Hint{"wheel", "zoom to the cursor"},
-    Hint{"click, right click", "select an object; what can be done with it"},
+    Hint{"click, right click", "select an object; open its menu"},
 };
 constexpr std::array kAfter{
     Hint{"gamepad",
-         "left stick: the hand; triggers: nearer, farther; A hold, B force off, Y next law, X "
-         "magnet"},
+         "left stick: move the hand; triggers: nearer, farther; A: hold, B: force off, Y: next "
+         "law, X: magnet"},
     Hint{"plots",
-         "drag pans, wheel zooms, double click fits, Shift+drag selects a stretch: its mean, rms "
-         "and "
-         "limits; right click chooses and saves"},
+         "drag: move; wheel: zoom; double click: show all; Shift+drag: select a time and see its "
+         "mean, rms and limits; right click: choose channels, save"},
     Hint{"sliders", "double click to type, right click for the default value"},
 };
 

@@ -166,9 +166,12 @@ void open_touch(Desktop& d) {
 
 void open_manual(Desktop& d) {
   const std::filesystem::path file = manual_file();
-  if (file.empty()) return d.notices.say("The manual is not there. Install Limpid again.", true);
+  if (file.empty()) return d.notices.say("The manual was not found. Install Limpid again.", true);
   if (open_elsewhere(file)) return d.notices.say("Opening the manual in the browser");
-  d.notices.say(fmt::format("Nothing here opens pages; the manual is {}", file.string()), true);
+  d.notices.say(
+      fmt::format("No program on this computer opens web pages. The manual is the file {}",
+                  file.string()),
+      true);
 }
 
 // Exports the plot under the mouse, or the one exported last.
@@ -222,7 +225,7 @@ std::string nothing_kept(const Desktop& d) {
 }
 
 std::string nothing_written(const Desktop& d) {
-  return d.exporter.written().empty() ? "Nothing was exported lately." : "";
+  return d.exporter.written().empty() ? "Nothing was exported recently." : "";
 }
 
 std::string nothing_recovered(const Desktop& d) {
@@ -247,8 +250,8 @@ template <TransformKind kKind>
 std::string cannot(const Desktop& d) {
   std::string why = selection_fixed(d);
   if (why.empty() && d.settings.lanes.count > 1 && !d.settings.overlaid) {
-    return "Runs are shown side by side. Show them in one picture (menu View), or end the twin "
-           "(B), to change objects in the picture.";
+    return "Runs are shown side by side. To change objects in the picture, show the runs in one "
+           "picture (menu View), or end the second run (B).";
   }
   if (!why.empty() || can(kKind, *d.document.editor().selected_object())) return why;
   return "This object cannot be changed in that way.";
@@ -262,12 +265,12 @@ std::string why_no_more_runs(const Desktop& d) {
 
 std::string why_no_fewer_runs(const Desktop& d) {
   const std::string why = d.live.why_lanes_are_fixed();
-  return why.empty() && d.settings.lanes.count == 1 ? "There is one run only." : why;
+  return why.empty() && d.settings.lanes.count == 1 ? "There is only one run." : why;
 }
 
 std::string no_virtual_arm(const Desktop& d) {
   return d.live.loop().device_in_place()
-             ? "A real device is in the arm's place. Choose the virtual arm first."
+             ? "A real device is used instead of the virtual arm. Choose the virtual arm first."
              : "";
 }
 
@@ -310,9 +313,8 @@ constexpr std::array kCommands{
         "switches the force off at once; in playback without a real device: play or pause",
         [](Desktop& d) { d.cut_or_play(); }, {.reach = Reach::all_but_text, .blind = true}),
     row("window.escape", "Close what is open, or force off", nullptr, "Esc",
-        "closes what is open, deselects, then ends the playback; with nothing open, and always on "
-        "a real device, "
-        "force off",
+        "closes what is open, then cancels the selection, then ends the playback; if nothing is "
+        "open, and always with a real device, switches the force off",
         [](Desktop& d) { d.escape(); }, {.reach = Reach::all, .blind = true}),
     row("arm.open", "Open arm (URDF)...", "Device", nullptr, nullptr,
         [](Desktop& d) { d.dialog.open("open arm"); }, {.why_not = no_virtual_arm}),
@@ -326,7 +328,7 @@ constexpr std::array kCommands{
     row("device.force", "Force on or off", "Device", "F", "force on or off",
         [](Desktop& d) { d.toggle_force(); }, {.apart = true, .now = force_label, .blind = true}),
     row("hand.magnet", "Magnet at the tip", "Device", "H",
-        "magnet at the tip: picks up what it touches, or lets go",
+        "magnet at the tip: picks up an object that the tip touches, or lets it go",
         [](Desktop& d) { d.live.toggle_magnet(); },
         {.why_not = no_magnet,
          .checked = [](const Desktop& d) { return d.live.controls().magnet; },
@@ -370,8 +372,8 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.dialog.open("open scene"); }),
     row("session.open", "Open session or sweep...", "File", "Ctrl+O", "open a recording or a sweep",
         [](Desktop& d) { d.dialog.open("open session"); }),
-    row("scene.add_model", "Add model...", "File", "Ctrl+M", "add a model, or drop one here",
-        [](Desktop& d) { d.dialog.open("add model"); }),
+    row("scene.add_model", "Add model...", "File", "Ctrl+M",
+        "add a model, or drop a model file here", [](Desktop& d) { d.dialog.open("add model"); }),
     row("scene.save", "Save scene", "File", "Ctrl+S", "save the scene; under another name",
         save_scene_here),
     row("scene.save_as", "Save scene as...", "File", "Ctrl+Shift+S", "",
@@ -395,7 +397,8 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.marking.can_redo() ? d.marking.redo() : d.document.redo(); },
         {.repeats = true}),
     row("object.move", "Move", "Edit", "G",
-        "selected object: move, turn, scale it with the mouse, or by a number: G X 2 5 Enter",
+        "selected object: move, turn or scale it with the mouse, or by a number, for example G X 2 "
+        "5 Enter",
         begin_transform<TransformKind::move>,
         {.apart = true, .reach = Reach::selection, .why_not = cannot<TransformKind::move>}),
     row("object.turn", "Turn", "Edit", "R", "", begin_transform<TransformKind::turn>,
@@ -403,9 +406,8 @@ constexpr std::array kCommands{
     row("object.scale", "Scale", "Edit", "S", "", begin_transform<TransformKind::scale>,
         {.reach = Reach::selection, .why_not = cannot<TransformKind::scale>}),
     row("object.along_x", "Along x alone", nullptr, "X",
-        "meanwhile: along one axis alone; Ctrl: in whole steps; click or Enter ends it, Esc gives "
-        "it "
-        "up",
+        "during the move: only along one axis; Ctrl: in whole steps; click or Enter accepts the "
+        "move, Esc cancels it",
         [](Desktop& d) { d.transform.lock(0); }, {.reach = Reach::transform}),
     row("object.along_y", "Along y alone", nullptr, "Y", "",
         [](Desktop& d) { d.transform.lock(1); }, {.reach = Reach::transform}),
@@ -433,15 +435,15 @@ constexpr std::array kCommands{
     row("view.plots", "Plots", "View", "F4", "", show_or_hide<&Settings::show_plots>,
         {.checked = is_shown<&Settings::show_plots>}),
     row("view.everything", "All settings and figures", "View", "F8",
-        "all settings and figures, or what a first hour needs",
+        "all settings and figures, or only what a beginner needs",
         [](Desktop& d) { show_everything(d.settings, !d.settings.everything); },
         {.checked = is_shown<&Settings::everything>}),
     row("plots.add", "Add a plot...", "View/Plots of", "N",
-        "a new plot: of any channel, over time, against another one, or its spectrum",
+        "a new plot of any channel: against time, against another channel, or its spectrum",
         [](Desktop& d) { d.plots.add(); }, {.apart = true}),
     row("plots.layouts", "Save, rename...", "View/Layouts", "Ctrl+L", "layouts of plots and panels",
         [](Desktop& d) { d.dialog.open("layouts"); }, {.apart = true}),
-    row("plots.freeze", "Freeze or follow the plots", nullptr, "X", "freeze or follow the plots",
+    row("plots.freeze", "Freeze or follow the plots", nullptr, "X", "stop or continue the plots",
         freeze_plots),
     row("view.ghost", "Ghost of the device", "View", "G", "ghost of the device, lens at the tip",
         show_or_hide<&Settings::show_ghost>,
@@ -512,8 +514,8 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.world.toggle_recording(); }, {.now = record_label}),
     row("session.play", "Play or pause", "Session", "P", "play, pause", play_or_pause),
     row("session.mark", "Set a mark...", "Session", "T",
-        "set a mark under the mouse in a plot, or at the present time; in playback: go to the mark "
-        "before or after",
+        "set a mark under the mouse in a plot, or at the present time; in playback: go to the "
+        "previous or the next mark",
         [](Desktop& d) { d.marking.begin(); }),
     row("session.mark_before", "Go to the previous mark", nullptr, "Ctrl+Left", "",
         [](Desktop& d) { d.marking.go(-1); },
@@ -522,13 +524,13 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.marking.go(1); },
         {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
     row("session.twin", "Twin: two couplings on one hand", "Session", "B",
-        "twin: a second coupling runs beside the first, led by the same hand",
+        "twin: a second coupling runs beside the first, moved by the same hand",
         [](Desktop& d) { d.tuning.toggle_twin(); },
         {.why_not = [](const Desktop& d) { return d.live.why_lanes_are_fixed(); },
          .checked = [](const Desktop& d) { return d.settings.lanes.count > 1; }}),
-    row("session.add_run", "One more run on the same hand", "Session", "Ctrl+B",
-        "one more coupling on the same hand, up to three", [](Desktop& d) { d.tuning.add_lane(); },
-        {.why_not = why_no_more_runs}),
+    row("session.add_run", "One more run with the same motion of the hand", "Session", "Ctrl+B",
+        "one more coupling on the same hand, up to three couplings",
+        [](Desktop& d) { d.tuning.add_lane(); }, {.why_not = why_no_more_runs}),
     row("session.drop_run", "One run less", "Session", "Ctrl+Shift+B",
         "end the last of several runs on the same hand", [](Desktop& d) { d.tuning.drop_lane(); },
         {.why_not = why_no_fewer_runs}),
@@ -570,7 +572,7 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.playback.close(); },
         {.reach = Reach::playback, .why_not = no_recording}),
     row("experiments.show", "Experiments of the paper...", "Session", "F5",
-        "the paper's experiments; the map of the sweep, or a new one",
+        "the paper's experiments; the map of the sweep, or a new sweep",
         [](Desktop& d) { show_or_close(d, "experiments"); }, {.apart = true}),
     row("sweep.show", "Map of the sweep", "Session", "F6", "", show_sweep),
     row("sweep.begin", "New sweep...", "Session", nullptr, nullptr,
@@ -578,7 +580,7 @@ constexpr std::array kCommands{
     row("scene.gallery", "Gallery...", "Scene", "Ctrl+G", "gallery of scenes",
         [](Desktop& d) { d.dialog.open("gallery"); }),
     row("scene.select_next", "Select the next object", nullptr, "Tab",
-        "select the next object of the scene, or the one before",
+        "select the next or the previous object of the scene",
         [](Desktop& d) { d.document.editor().select_next(1); }, {.repeats = true}),
     row("scene.select_previous", "Select the object before", nullptr, "Shift+Tab", "",
         [](Desktop& d) { d.document.editor().select_next(-1); }, {.repeats = true}),
@@ -589,7 +591,7 @@ constexpr std::array kCommands{
     row("scene.discard_and_leave", "Discard the changes and go on", nullptr, "D", nullptr,
         [](Desktop& d) { d.document.discard_and_leave(); },
         {.reach = Reach::question, .why_not = no_question, .blind = true}),
-    row("scene.open_kept", "Open the scene that was kept", nullptr, nullptr, nullptr,
+    row("scene.open_kept", "Open the automatically saved scene", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.world.open_scene(d.kept.take()); }, {.why_not = nothing_kept}),
     row("scene.leave_kept", "Leave the scene that was kept in the gallery", nullptr, nullptr,
         nullptr, [](Desktop& d) { d.kept.leave(); }, {.why_not = nothing_kept}),
@@ -618,7 +620,7 @@ const Command* find_command(std::string_view id) {
 
 std::string why_not(const Command& command, const Desktop& desktop, Asker who) {
   if (desktop.blind && who == Asker::person && !command.how.blind) {
-    return "A program hides law, settings and plots until it is done.";
+    return "A program hides law, settings and plots until the program has finished.";
   }
   return command.how.why_not != nullptr ? command.how.why_not(desktop) : std::string();
 }

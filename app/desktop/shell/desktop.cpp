@@ -125,19 +125,21 @@ std::optional<Banner> live_force(const LiveStage& live) {
   const bool recording = live.loop().recording();
   Banner banner = force_banner(recording ? "Recording without force" : "Force is off", why,
                                recording || now.arming == Arming::tripped);
-  banner.text += " F arms the force.";
+  banner.text += " Key F switches the force on.";
   banner.buttons = {{"Arm (F)", "device.force"}};
   return banner;
 }
 
 // Says what passivity broken on purpose does: nothing until force is on and a hand holds the arm.
 Banner break_banner(bool force, bool hand) {
-  const char* const now = !force ? "Energy grows once the force is on."
-                          : hand ? "A stiff hand holds the arm, and energy grows."
-                                 : "Energy grows once a hand holds the arm: drag the tip.";
+  const char* const now =
+      !force ? "Energy will grow as soon as the force is on."
+      : hand ? "A stiff hand holds the arm, and energy grows."
+             : "Energy will grow as soon as a hand holds the arm. To hold the arm, drag its tip.";
   return {.id = "banner of the break",
-          .text = fmt::format(
-              "Passivity is broken on purpose. {} All settings come back at the end.", now),
+          .text = fmt::format("Passivity is broken on purpose. {} At the end all settings get "
+                              "their earlier values again.",
+                              now),
           .bad = true,
           .buttons = {{"End it (C)", "coupling.end_break"}}};
 }
@@ -251,7 +253,7 @@ void Desktop::follow_first_steps() {
     } else if (over && told && !player.playing()) {  // not while the user looks at its end
       playback.close();
       settings.your_turn = !all_done(settings);
-      if (!settings.your_turn) notices.say("That was the story. The arm is yours.");
+      if (!settings.your_turn) notices.say("The story has ended. You can move the arm now.");
     }
     law_.reset();
     return;
@@ -298,8 +300,8 @@ void Desktop::update(double dt) {
   if (live.became_unstable()) {
     cut_force();
     notices.say(
-        "The loop became unstable; force is off. Choose a larger \xCE\xB7 or a smaller \xCE\xB1, "
-        "start over (Backspace), then press F to arm the force.",
+        "The loop became unstable, so the force is off. Choose a larger \xCE\xB7 or a smaller "
+        "\xCE\xB1, start over (Backspace), then press F to arm the force.",
         true);
   }
   notices.forget_old();
@@ -366,8 +368,8 @@ Focus Desktop::focus() const {
 void Desktop::toggle_force() {
   if (!live.force_armed() && playback.on() && live.loop().device_in_place()) {
     return notices.say(
-        "A recording is on the screen, not the scene in which the device would push. Go back to "
-        "live (Backspace), then arm the force.",
+        "The window shows a recording, not the scene in which the device would give force. Go back "
+        "to live (Backspace), then arm the force.",
         true);
   }
   live.toggle_force();
@@ -470,13 +472,14 @@ std::vector<Banner> Desktop::banners() const {
                    .buttons = {{"Show (F6)", "sweep.show"}}});
   }
   if (kept.any()) {
-    all.push_back({.id = "banner of what was kept",
-                   .text = fmt::format("Limpid was ended while a scene had unsaved changes. They "
-                                       "were kept on {} in {}.",
-                                       when(kept.newest()), kept.newest().filename().string()),
-                   .buttons = {{"Open", "scene.open_kept"},
-                               {"Later", "scene.leave_kept"},
-                               {"Discard", "scene.discard_kept"}}});
+    all.push_back(
+        {.id = "banner of what was kept",
+         .text = fmt::format(
+             "Limpid ended while a scene had unsaved changes. The changes were saved on {} in {}.",
+             when(kept.newest()), kept.newest().filename().string()),
+         .buttons = {{"Open", "scene.open_kept"},
+                     {"Later", "scene.leave_kept"},
+                     {"Discard", "scene.discard_kept"}}});
   }
   return all;
 }

@@ -145,7 +145,7 @@ class Desktop {
 
   // Does the work of a frame before anything is drawn; to be called once a frame.
   void update(double dt);
-  // Takes the present gamepads, `dt` [s] after the last call. The chosen one leads the hand if the
+  // Takes the present gamepads, `dt` [s] after the last call. The chosen one moves the hand if the
   // window has the focus and nothing is open over it.
   void follow_pads(std::vector<Pad> plugged, bool focused, double dt);
   // Does the work of a device's first button: the magnet if something can be picked up, else the

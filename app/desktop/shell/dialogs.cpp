@@ -91,8 +91,8 @@ SweepBasis sweep_basis(Desktop& d) {
   return {.device = d.settings.device,
           .scene = d.document.file(),
           .why_not_scene = d.document.editor().dirty() || d.document.file().empty()
-                               ? "The scene has changes that are not saved, and a sweep takes it "
-                                 "from its file. Save it first (Ctrl+S)."
+                               ? "The scene has changes that are not saved, but a sweep reads the "
+                                 "scene from its file. Save the scene first (Ctrl+S)."
                                : "",
           .recording = d.playback.on() ? d.playback.shown()->file() : fs::path(),
           .parameters = d.tuning.edited()};
@@ -287,7 +287,7 @@ DrawDialog layout_list(Desktop& d) {
       d, d.plots.layouts,
       {.title = "Layouts",
        .what = "layout",
-       .help = "Which plots and panels the window shows, by name."},
+       .help = "Each layout has a name and says which plots and panels the window shows."},
       [](Desktop& desktop, const std::string& name) { desktop.plots.use(name); },
       [](Desktop& desktop) { return layout_text(desktop.settings); });
 }
@@ -297,8 +297,9 @@ DrawDialog preset_list(Desktop& d) {
       d, d.tuning.presets,
       {.title = "Presets",
        .what = "preset",
-       .help = "Coupling and gains by name; with several runs, those of the run that the sliders "
-               "set. Ctrl+Z brings back the earlier settings."},
+       .help = "Each preset has a name and contains a coupling and its gains. With several runs, a "
+               "preset belongs to the run that the sliders set. Ctrl+Z brings back the earlier "
+               "settings."},
       [](Desktop& desktop, const std::string& name) { desktop.tuning.use_preset(name); },
       [](Desktop& desktop) { return preset_text(desktop.tuning.edited()); });
 }
@@ -382,7 +383,7 @@ void draw_messages(bool& open, const Notices& notices) {
   if (!open) return;
   begin_reading("Messages", 46, 0.6f, open);
   ImGui::BeginChild("all", {0, -ImGui::GetFrameHeightWithSpacing()});
-  if (notices.past().empty()) ImGui::TextDisabled("none since the start");
+  if (notices.past().empty()) ImGui::TextDisabled("no messages since the start");
   std::string all;
   for (const Notice& notice : notices.past() | std::views::reverse) {
     const std::time_t at = std::chrono::system_clock::to_time_t(notice.said);
@@ -413,13 +414,13 @@ void draw_about(bool& open) {
       "coupling between hand and world is.");
   ImGui::Spacing();
   ImGui::TextWrapped(
-      "The proposed coupling is that of \"Improving transparency of virtual coupling for haptic "
-      "interaction with human force observer\"; numbers in parentheses are its equations. Please "
-      "cite the paper when you publish what you measured here.");
+      "The proposed coupling comes from the paper \"Improving transparency of virtual coupling for "
+      "haptic interaction with human force observer\". Numbers in parentheses are equations of "
+      "this paper. Please cite the paper when you publish results that you measured with Limpid.");
   ImGui::Spacing();
   ImGui::TextWrapped(
-      "Built on GLFW, Dear ImGui, Eigen, GLM, tinygltf, assimp, Draco, HDF5, urdfdom and fmt. Text "
-      "is set in Inter (SIL Open Font License).");
+      "Limpid uses GLFW, Dear ImGui, Eigen, GLM, tinygltf, assimp, Draco, HDF5, urdfdom and fmt. "
+      "The font is Inter (SIL Open Font License).");
   close_button("Close (Esc)", open);
   ImGui::End();
 }

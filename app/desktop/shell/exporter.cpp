@@ -123,7 +123,8 @@ void Exporter::update() {
 void Exporter::open_written() {
   live_.save_beside([file = std::exchange(written_, {})]() -> PlotNotice {
     if (open_elsewhere(file)) return {fmt::format("Opening {}", file.filename().string())};
-    return {"Nothing here opens files: xdg-open (of the package xdg-utils) is missing.", true};
+    return {"The file cannot be opened, because xdg-open (of the package xdg-utils) is missing.",
+            true};
   });
 }
 
@@ -131,7 +132,7 @@ void Exporter::show_written() {
   live_.save_beside([file = std::exchange(written_, {})]() -> PlotNotice {
     if (show_in_folder(file))
       return {fmt::format("The file is in {}", file.parent_path().string())};
-    return {fmt::format("The file is in {}. No file manager answers on this computer.",
+    return {fmt::format("The file is in {}. No file manager was found on this computer.",
                         file.parent_path().string()),
             true};
   });

@@ -46,7 +46,7 @@ fs::path FileQuestion::draw(bool& open, const std::function<Place()>& place) {
 // Draws a note on the desktop's dialog, with a way out for users who do not find it.
 void FileQuestion::draw_waiting(bool& open) {
   if (!begin_modal(dialog_.options().title, open, {30 * ImGui::GetFontSize(), 0})) return;
-  ImGui::TextWrapped("The desktop's own dialog asks for the file.");
+  ImGui::TextWrapped("Choose the file in your desktop's own dialog.");
   ImGui::Spacing();
   if (noted_button("Ask here instead")) portal_.reset();
   ImGui::SameLine();

@@ -71,7 +71,11 @@ void Frame::draw() {
   });
   // Modal dialogs come last: ImGui fails on windows that appear after them in their first frame.
   dialogs_.draw(true, at.view);
-  draw_notices(desktop_.notices, at.view, below_banners_);
+  Crowd crowd = view_.crowd();
+  for (const auto& card : {your_turn_.rect(), view_.hinted()}) {
+    if (card) crowd.kept_free.push_back(*card);
+  }
+  notices_.draw(desktop_.notices, at.view, below_banners_, crowd);
 }
 
 // Ends the lead of the keys with a click, a dialog, or the panel's end. Passes over panels that are

@@ -69,6 +69,7 @@ class Frame {
   FileMenus files_;
   ViewPanel view_;
   YourTurn your_turn_;
+  NoticeSigns notices_;
   std::array<PlayedChatter, kMostLanes> played_chatter_;
   const Stage* chatter_of_ = nullptr;
   RangePanel figures_;

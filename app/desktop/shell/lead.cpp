@@ -59,8 +59,9 @@ bool Lead::end(bool study) {
     // The law must not change without notice under a hand on the device.
     if (d_.live.loop().device_in_place()) d_.cut_force();
     if (before) go_back(*before);
-    d_.notices.say(study ? "The study has ended. Your settings are back."
-                         : "The program that led this window has ended. Your settings are back.");
+    d_.notices.say(
+        study ? "The study has ended. Your settings are back."
+              : "The program that controlled this window has ended. Your settings are back.");
   }
   own_.reset();
   return true;

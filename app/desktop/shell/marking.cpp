@@ -56,7 +56,7 @@ std::string Marking::when() const {
   }
   const double time = moment_.time - live_.stage().history.offset();
   return fmt::format("at {:.3f} s; {}", time,
-                     moment_.row ? "kept in the recording" : "in the plots; nothing is recorded");
+                     moment_.row ? "kept in the recording" : "only in the plots (no recording)");
 }
 
 void Marking::accept(const std::string& text) {

@@ -33,7 +33,7 @@ void draw_unsaved_question(bool& open, bool has_file, const Act& act) {
 void draw_quit_question(bool& open, const Act& act) {
   if (!begin_modal("End the recording?", open, {0, 0})) return;
   ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());
-  ImGui::TextUnformatted("A recording is under way. What is recorded so far is kept.");
+  ImGui::TextUnformatted("A recording is running. The part recorded until now is kept.");
   ImGui::PopTextWrapPos();
   ImGui::Spacing();
   bool end = accepted();
@@ -51,7 +51,7 @@ bool draw_xacro_question(bool& open, const std::filesystem::path& file) {
   if (!begin_modal("Expand xacro?", open, {0, 0})) return false;
   ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());
   ImGui::TextWrapped(
-      "%s is a xacro file: expanding it runs program xacro, which can run code in "
+      "%s is a xacro file. To expand it, Limpid runs the program xacro, which can run code from "
       "the file.",
       file.filename().c_str());
   ImGui::PopTextWrapPos();
@@ -75,8 +75,7 @@ std::string TipQuestion::draw(bool& open, const TipsToChoose& choice) {
   was_open_ = true;
   if (appears) chosen_ = 0;
   ImGui::TextWrapped(
-      "%s has more than one end. Which one does the hand hold? The other branches "
-      "are held still.",
+      "%s has more than one end. Which end does the hand hold? The other branches do not move.",
       std::filesystem::path(choice.file).filename().c_str());
   const std::size_t before = chosen_;
   if (key_pressed(GLFW_KEY_DOWN) && chosen_ + 1 < choice.tips.size()) ++chosen_;

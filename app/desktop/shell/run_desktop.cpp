@@ -36,7 +36,7 @@ void keep_changes(const SceneDocument& document, const ArmDescription& arm,
        {scenes_dir(), std::filesystem::temp_directory_path() / "limpid"}) {
     try {
       const auto file = keep_unsaved(document, arm, name, folder);
-      say("unsaved changes are in " + file.string());
+      say("unsaved changes were saved in " + file.string());
       return;
     } catch (const std::exception& e) {
       say(fmt::format("unsaved changes: {}", e.what()));
@@ -125,7 +125,8 @@ void Application::open() {
   // A double click on a file asks for the file, not for a device.
   if (!options_.session.empty() || !options_.files.empty()) {
     desktop_.devices.wait_for_choice(
-        "This window was started with a file, so that it connects to no device by itself.");
+        "This window was started with a file. Therefore it does not connect to a device by "
+        "itself.");
   }
   if (!options_.in_use.empty()) desktop_.devices.use(options_.in_use);
   if (!options_.listen.empty()) remote_.emplace(options_.listen, desktop_);
@@ -186,7 +187,7 @@ void Application::finish() {
 
 // Ends without asking the display for anything. Settings come last.
 void Application::leave_without_display(bool with_scene) {
-  say("the display is gone");
+  say("the connection to the display was lost");
   finish();
   if (with_scene) keep_scene();
   keep();
@@ -216,7 +217,7 @@ void Application::turn() {
   guard(notices, [&] { desktop_.update(now - last_); });
   if (kept_.due(now)) {
     if (const std::string failure = kept_.follow(settings_to_keep()); !failure.empty()) {
-      notices.say("Settings not saved: " + failure, true);
+      notices.say("The settings were not saved: " + failure, true);
     }
   }
   last_ = now;
@@ -255,7 +256,7 @@ void Application::say_what_was_saved() {
       desktop_.exporter.wrote(picture.file);  // a banner says so
     } else {
       desktop_.notices.say(
-          picture.error + ". See to it that the folder is there and can be written to.", true);
+          picture.error + ". Make sure that the folder exists and that you may write to it.", true);
     }
   }
 }
@@ -270,7 +271,7 @@ void Application::keep() {
     keep_changes(waiting->world->document, waiting->arm, waiting->file);
   }
   if (const std::string error = kept_.keep(settings_to_keep()); !error.empty()) {
-    say("settings not saved: " + error);
+    say("the settings were not saved: " + error);
   }
 }
 

@@ -56,7 +56,9 @@ DrawSection hand_section(Desktop& d) {
       draw_parameters(d.settings.parameters(), arm, {"hand.damping", "hand.mass"});
     }
     ImGui::Checkbox("hold where released", &d.settings.hold_on_release);
-    tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
+    tooltip(
+        "When you release the mouse button, the hand stays where it is and does not let go of the "
+        "arm.");
     if (d.playback.on()) return;
     draw_grip(d.live.grip(), d.live.stage().arm(), d.document.scene(), d.settings.parameters());
   };

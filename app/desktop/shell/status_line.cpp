@@ -26,17 +26,18 @@ StatusPart force_part(const Snapshot& now) {
   const Palette& colours = current_palette();
   const std::string why = explain(now.force_state);
   switch (now.arming) {
-    case Arming::on: return {"force on [Esc]", colours.text, "Esc or space cuts the force at once"};
+    case Arming::on:
+      return {"force on [Esc]", colours.text, "Esc or Space switches the force off at once"};
     case Arming::fading: return {"force fades [Esc]", colours.text, "Force: " + why};
     case Arming::waiting:
       return {"force waits [Esc]", colours.text,
               "The force fades in when the hand holds the device: " + why};
     case Arming::tripped:
       return {"force off [F]", colours.broken,
-              "Force is off: " + why + ". F arms the force again."};
+              "Force is off: " + why + ". Key F switches the force on again."};
     case Arming::off: break;
   }
-  return {"force off [F]", colours.text, "F arms the force"};
+  return {"force off [F]", colours.text, "Key F switches the force on"};
 }
 
 // Returns rate, missed ticks and coupling, the most important last.
@@ -53,8 +54,8 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
   }
   // The recording's button is in the bar below only while the loop is shown.
   if (!played.empty() && loop.recording()) {
-    parts.push_back(
-        {"recording [R]", colours.broken, "The loop is recorded meanwhile. R ends the recording."});
+    parts.push_back({"recording [R]", colours.broken,
+                     "The live loop is still recorded during playback. R ends the recording."});
   }
   if (led) {
     parts.push_back(
@@ -63,7 +64,8 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
          "come back when that program ends."});
   }
   if (!pace.empty()) {
-    parts.push_back({pace, colours.accent, "Only the simulation; the control loop keeps running."});
+    parts.push_back(
+        {pace, colours.accent, "Stops only the simulation; the control loop keeps running."});
   }
   parts.push_back({stopped ? "loop stopped" : fmt::format("{:.0f} Hz", status.rate),
                    stopped ? colours.broken : colours.muted, status.failure});
@@ -72,11 +74,10 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
   parts.push_back(
       {missed < 1e-3 ? "on time" : fmt::format("{:.1f} % of ticks missed", 100 * missed),
        missed > 0.01 ? colours.broken : colours.muted,
-       fmt::format(
-           "{} ticks were missed: they began after the next tick was due.\n{} ticks began more "
-           "than 0.2 ms late. {} ticks were skipped, {}.",
-           status.missed, status.late, status.slipped,
-           loop.device_in_place() ? "at once" : "after a stall")});
+       fmt::format("{} ticks were missed, because they began after the next tick was due.\n{} "
+                   "ticks began more than 0.2 ms late. {} ticks were skipped {}.",
+                   status.missed, status.late, status.slipped,
+                   loop.device_in_place() ? "immediately" : "after a long stop of the loop")});
   std::string name = info(law.kind).label;
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
   if (info(law.kind).takes_eta) name += fmt::format(" \xCE\xB7 {:.2f}", law.eta);
@@ -102,7 +103,7 @@ void draw_status(const LiveLoop& loop, const StatusLaw& law, const StatusGoing& 
   } else {
     parts.push_back(
         {"space plays [Esc: live]", current_palette().muted,
-         "Space plays and pauses, a click in a plot goes there, Esc goes back to live"});
+         "Space plays and pauses. A click in a plot goes to that time. Esc goes back to live."});
   }
   const float room = ImGui::GetWindowWidth() - ImGui::GetCursorPosX();
   float width = 0;

@@ -59,7 +59,8 @@ GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) 
                                         "Limpid", nullptr, nullptr);
   if (window == nullptr) {
     glfwTerminate();
-    throw std::runtime_error("the display gives no OpenGL 3.3; `limpid run` works without");
+    throw std::runtime_error(
+        "the display does not offer OpenGL 3.3; `limpid run` works without it");
   }
   glfwMakeContextCurrent(window);
   glfwSetWindowSizeLimits(window, std::min(kLeastWidth, area.width),
@@ -223,7 +224,7 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
     const char* why = nullptr;
     glfwGetError(&why);
     throw std::runtime_error(
-        std::string("no display to open a window on (") +
+        std::string("there is no display for a window (") +
         (why != nullptr ? why : "glfwInit failed") +
         "); `limpid run` works without one, and so does `limpid play SESSION.h5 --video OUT.mp4`");
   }

@@ -165,8 +165,7 @@ Answer WindowRemote::open(const Keys& keys, LineServer::Client client) {
     throw RemoteError("open: not while a recording runs; stop the recording first");
   }
   if (d_.document.editor().dirty() && !keys.has("session")) {
-    throw RemoteError(
-        "open: the scene has changes that nobody has saved; a person decides on them");
+    throw RemoteError("open: the scene has unsaved changes; a person must decide about them");
   }
   const bool arm = keys.has("arm");
   const int asked = static_cast<int>(keys.has("scene")) + static_cast<int>(arm) +
@@ -174,7 +173,7 @@ Answer WindowRemote::open(const Keys& keys, LineServer::Client client) {
   if (asked != 1) throw RemoteError("open: allowed: one of scene, arm, session, hand");
   if (keys.has("tip") && !arm) throw keys.error("tip", "belongs to an arm");
   if (keys.has("wait"))
-    throw keys.error("wait", "needs `limpid serve`; here hands are run at once");
+    throw keys.error("wait", "needs `limpid serve`; here motions of a hand are run immediately");
   const auto elsewhere = [&](fs::path file) {
     lead(client);
     d_.lead.begin_elsewhere();
@@ -183,7 +182,7 @@ Answer WindowRemote::open(const Keys& keys, LineServer::Client client) {
   if (keys.has("scene")) return open_scene(elsewhere(file_of(keys, "scene", "scenes")));
   if (arm) {
     if (d_.live.loop().device_in_place()) {
-      throw RemoteError("open: a real device is in the arm's place");
+      throw RemoteError("open: a real device is used instead of the virtual arm");
     }
     return open_arm(elsewhere(file_of(keys, "arm", "devices")), keys.text_if("tip").value_or(""));
   }
@@ -197,7 +196,7 @@ Answer WindowRemote::open_scene(const fs::path& file) {
   return Answer::Later([this, before = stage_]() -> std::optional<json> {
     if (d_.document.loader().busy()) return std::nullopt;
     if (&d_.live.stage() == before)
-      throw RemoteError(last_complaint("open: the scene did not come"));
+      throw RemoteError(last_complaint("open: the scene was not loaded"));
     return state_of(d_);
   });
 }
@@ -207,7 +206,8 @@ Answer WindowRemote::open_arm(const fs::path& file, const std::string& tip) {
   d_.world.open_arm(file, tip);
   return Answer::Later([this, before = stage_]() -> std::optional<json> {
     if (d_.document.loader().busy()) return std::nullopt;
-    if (&d_.live.stage() == before) throw RemoteError(last_complaint("open: the arm did not come"));
+    if (&d_.live.stage() == before)
+      throw RemoteError(last_complaint("open: the arm was not loaded"));
     hold_limits(d_.settings.parameters(), highest_, d_.live.stage().arm());
     limits_ = limits_of(d_.settings.parameters());
     d_.lead.note_program();
@@ -221,7 +221,7 @@ Answer WindowRemote::play(const fs::path& file) {
   d_.world.open_files({file});
   return Answer::Later([this]() -> std::optional<json> {
     if (d_.playback.loading()) return std::nullopt;
-    if (!d_.playback.on()) throw RemoteError(last_complaint("open: the session did not come"));
+    if (!d_.playback.on()) throw RemoteError(last_complaint("open: the session was not loaded"));
     return state_of(d_);
   });
 }
@@ -245,7 +245,8 @@ Answer WindowRemote::record(const Keys& keys) {
   d_.world.record(file, replaces);
   records_ = true;
   return Answer::Later([this]() -> std::optional<json> {
-    if (!d_.live.recording()) throw RemoteError(last_complaint("record: it has not begun"));
+    if (!d_.live.recording())
+      throw RemoteError(last_complaint("record: the recording has not begun"));
     const LiveLoop& loop = d_.live.loop();
     if (!loop.recording() || !loop.snapshot().recording) return std::nullopt;
     recorded_ = loop.recorder()->out();
@@ -308,7 +309,8 @@ Answer WindowRemote::twin(const Keys& keys, LineServer::Client client) {
 }
 
 Answer WindowRemote::blind(const Keys& keys, LineServer::Client client) {
-  if (hides_ && *hides_ != client) throw RemoteError("blind: another program has asked for it");
+  if (hides_ && *hides_ != client)
+    throw RemoteError("blind: another program hides the plots already");
   const bool on = keys.flag_or("on", true);
   if (on && d_.dialog.kind() != nullptr && d_.dialog.name() != "ask") d_.dialog.close();
   d_.blind = on;
@@ -320,7 +322,7 @@ Answer WindowRemote::blind(const Keys& keys, LineServer::Client client) {
 Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
   if (d_.question.asking()) throw RemoteError("ask: another question is open");
   if (d_.document.asking() || d_.identify.busy()) {
-    throw RemoteError("ask: the window already asks something; answer that first");
+    throw RemoteError("ask: the window already asks another question; answer that question first");
   }
   const bool ends = keys.has("seconds");
   auto choices = keys.texts_if("choices", PersonQuestion::kMostChoices);
@@ -348,7 +350,7 @@ Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
 Answer WindowRemote::picture(const Keys& keys) {
   const fs::path file = keys.file_to_write(".png");
   std::erase_if(saved_, [&](const SavedPicture& each) { return each.file == file; });
-  if (!d_.asked.picture.empty()) throw RemoteError("picture: another one is being saved");
+  if (!d_.asked.picture.empty()) throw RemoteError("picture: another picture is being saved");
   d_.asked.picture = file;
   return Answer::Later([this, file]() -> std::optional<json> {
     const auto done = std::ranges::find(saved_, file, &SavedPicture::file);

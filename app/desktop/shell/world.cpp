@@ -144,11 +144,11 @@ void World::take_stage(MeshModels models, bool saved) {
 
 void World::open_arm(const fs::path& file, const std::string& tip) {
   if (d_.live.recording()) {
-    return d_.notices.say("Stop the recording (R) before opening another arm.", true);
+    return d_.notices.say("Stop the recording (R) before you open another arm.", true);
   }
   if (d_.live.loop().device_in_place()) {
-    return d_.notices.say("A real device is in the arm's place. Choose the virtual arm first.",
-                          true);
+    return d_.notices.say(
+        "A real device is used instead of the virtual arm. Choose the virtual arm first.", true);
   }
   const fs::path whole = fs::absolute(file).lexically_normal();
   d_.document.loader().open_arm(whole, tip, consent(whole));
@@ -234,7 +234,8 @@ void World::say_about_arm() {
     d_.notices.say(arm.warnings[i]);
   }
   if (arm.warnings.size() > kSaid) {
-    d_.notices.say(fmt::format("{} more warnings: limpid check {}", arm.warnings.size() - kSaid,
+    d_.notices.say(fmt::format("{} more warnings. To see them: limpid check {}",
+                               arm.warnings.size() - kSaid,
                                fs::path(device_file_).filename().string()));
   }
 }
@@ -285,7 +286,7 @@ bool World::virtual_arm_again() {
   try {
     arms.push_back(read_urdf(device_file_, device_tip_, consent(device_file_)));
   } catch (const std::exception& e) {
-    d_.notices.say(fmt::format("{} The arm before is still in use.", e.what()), true);
+    d_.notices.say(fmt::format("{} The previous arm is still in use.", e.what()), true);
   }
   if (virtual_arm_) arms.push_back(*virtual_arm_);
   if (const SetAside* waiting = d_.document.waiting()) arms.push_back(waiting->arm);
@@ -302,7 +303,9 @@ bool World::virtual_arm_again() {
       why = e.what();
     }
   }
-  d_.notices.say(fmt::format("The device stays in the arm's place: {}", why), true);
+  d_.notices.say(
+      fmt::format("The device stays in use, because the virtual arm cannot be opened: {}", why),
+      true);
   return false;
 }
 
@@ -325,7 +328,7 @@ void World::take_up_set_aside(const ArmDescription& arm) {
   const SetAside& waiting = *d_.document.waiting();
   auto scene = Document::scene_for(arm, waiting);
   if (!scene) {
-    throw std::runtime_error(fmt::format("the scene {} that waits is of another arm than {}",
+    throw std::runtime_error(fmt::format("the next scene, {}, is made for a different arm than {}",
                                          fs::path(waiting.file).filename().string(), arm.name));
   }
   open(arm, std::move(scene->document), std::move(scene->models), nullptr, !waiting.unsaved);
@@ -363,17 +366,18 @@ void World::go_to(const Place& place) {
 
 std::string World::why_fixed() const {
   if (d_.live.recording()) {
-    return "Stop the recording (R) before changing the scene: it is part of what is recorded.";
+    return "Stop the recording (R) before you change the scene, because the scene is part of the "
+           "recording.";
   }
-  return d_.playback.on()
-             ? "This is a recording's scene. Go back to live (Backspace) to change yours."
-             : "";
+  return d_.playback.on() ? "This scene belongs to a recording. Go back to live (Backspace) to "
+                            "change your own scene."
+                          : "";
 }
 
 // Leaves the scene, after the user was asked about unsaved changes.
 void World::leave_for_scene(std::function<void()> then) {
   if (d_.live.recording()) {
-    d_.notices.say("Stop the recording (R) before opening another scene.", true);
+    d_.notices.say("Stop the recording (R) before you open another scene.", true);
     return;
   }
   d_.document.leave([this, then = std::move(then)] {
@@ -544,8 +548,9 @@ void World::start_recording(fs::path file, bool replaces) {
   }
   hand_scene_over(true);
   if (plan.layout().bodies() != d_.live.loop().layout().bodies()) {
-    d_.notices.say("Not recorded: objects that move came or went while a device is in place.",
-                   true);
+    d_.notices.say(
+        "Nothing is recorded: moving objects were added or removed while a device was connected.",
+        true);
     return;
   }
   d_.live.record(plan, file, replaces);

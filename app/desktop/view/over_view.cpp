@@ -20,6 +20,7 @@ namespace limpid {
 namespace {
 
 constexpr float kBeside = 26;  // room that a sentence needs beside the legend [em]
+constexpr float kFoot = 6;     // room for the sign of loading at the foot of the view [em]
 
 float buttons_width(const Banner& banner) {
   const ImGuiStyle& style = ImGui::GetStyle();
@@ -133,26 +134,40 @@ ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, Screen
   return {signs.min, {view.max.x, std::max(y, signs.max.y)}};
 }
 
-// Draws notices beside the legend if there is room for a sentence, else below it.
-void draw_notices(const Notices& notices, ScreenRect view, ScreenRect legend) {
+void NoticeSigns::draw(const Notices& notices, ScreenRect view, ScreenRect legend,
+                       const Crowd& crowd) {
+  if (notices.all().empty()) return place_.forget();
   const Palette& colours = palette(current_theme());
   ImDrawList* draw = ImGui::GetForegroundDrawList();
   const float em = ImGui::GetFontSize();
   const float pad = 0.5f * em;
-  const bool beside = view.max.x - legend.max.x > 26 * em;
+  // Notices stand beside the legend if there is room for a sentence, else below it.
+  const bool beside = view.max.x - legend.max.x > kBeside * em;
   const float left = beside ? legend.max.x + em : view.min.x + pad;
   const float right = view.max.x - pad;
   const float wrap = std::max(right - left - 2 * pad, 4 * em);
   const auto size_of = [&](const Notice& notice) {
     return ImGui::CalcTextSize(notice.text.c_str(), nullptr, false, wrap);
   };
-  float y = (beside ? view.min.y : legend.max.y) + 0.7f * em;
-  // Below a dialog, as far as there is room, notices cover neither its title nor its buttons.
+  ImVec2 all{};
+  for (const Notice& notice : notices.all()) {
+    const ImVec2 size = size_of(notice);
+    all = {std::max(all.x, size.x + 2 * pad), all.y + size.y + 3 * pad};
+  }
+  float y = 0;
   if (const ImGuiWindow* dialog = ImGui::GetTopMostPopupModal()) {
-    float height = 0;
-    for (const Notice& notice : notices.all()) height += size_of(notice).y + 3 * pad;
+    // Below a dialog, as far as there is room, notices cover neither its title nor its buttons.
     const float last = ImGui::GetMainViewport()->WorkPos.y + ImGui::GetMainViewport()->WorkSize.y;
-    y = std::min(dialog->Pos.y + dialog->Size.y + pad, last - height);
+    y = std::min(dialog->Pos.y + dialog->Size.y + pad, last - all.y);
+  } else {
+    const float from = std::max(left, (left + right - all.x) / 2);
+    const float high = (beside ? view.min.y : legend.max.y) + 0.7f * em;
+    const float low = view.max.y - kFoot * em - all.y;
+    std::vector<ScreenRect> places;
+    for (const float top : {high, low}) {
+      if (top >= high) places.push_back({{from, top}, {from + all.x, top + all.y}});
+    }
+    y = place_.choose(places, crowd)->min.y;
   }
   for (const Notice& notice : notices.all()) {
     const ImVec2 size = size_of(notice);
@@ -178,7 +193,8 @@ void draw_loading(SceneLoader& loader, bool recording, ScreenRect view) {
   std::string text = loader.what();
   const double left = loader.seconds_left();
   if (loader.part() >= 1) {
-    text += recording ? ": loaded, and shown when the recording ends (R)" : ", making it touchable";
+    text += recording ? ": loaded; it is shown when the recording ends (R)"
+                      : ", preparing it for touch";
   } else if (left >= 1) {
     text += fmt::format(", {:.0f} s left", left);
   }
@@ -248,8 +264,8 @@ bool story_asked_for(const Playback& playback, const Settings& settings, ScreenR
                    ImGuiWindowFlags_NoNav);
   const bool asked = noted_button("Show me (47 s)");
   tooltip(
-      "Plays a story: two couplings in one hand. Drag in the picture, or Backspace, to take "
-      "over at any moment.");
+      "Plays a story about two couplings in one hand. Drag in the picture or press Backspace to "
+      "move the arm yourself at any moment.");
   ImGui::End();
   return asked;
 }

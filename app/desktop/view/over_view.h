@@ -31,8 +31,14 @@ struct Banner {
 ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, ScreenRect signs,
                         const Act& act);
 
-// Draws notices below banners and legend.
-void draw_notices(const Notices& notices, ScreenRect view, ScreenRect legend);
+// Draws notices below banners and legend, or at the foot of the view where they hide less there.
+class NoticeSigns {
+ public:
+  void draw(const Notices& notices, ScreenRect view, ScreenRect legend, const Crowd& crowd);
+
+ private:
+  FreePlace place_;
+};
 
 // Draws the progress of loading at the foot of the view. `recording`: what is loaded waits for the
 // recording's end.

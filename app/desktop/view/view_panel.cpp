@@ -121,13 +121,13 @@ std::vector<std::string> hints(const std::string& task, const std::string& pad,
                                const Settings& settings) {
   const std::pair<FirstStep, std::string> all[] = {
       {FirstStep::pull, pad.empty()
-                            ? "Drag the arm by its tip onto the table, and further down to press."
-                            : "Left stick of " + pad + ": your hand pulls the arm onto the table."},
-      {FirstStep::push, pad.empty()
-                            ? "Wheel while dragging: nearer and farther."
-                            : "Its triggers: nearer and farther. A lets go, B cuts the force."},
+                            ? "Drag the arm by its tip onto a surface, and further in to press."
+                            : "Left stick of " + pad + ": your hand pulls the arm onto a surface."},
+      {FirstStep::push,
+       pad.empty() ? "Turn the wheel while you drag: nearer and farther."
+                   : "Its triggers: nearer and farther. A lets go, B switches the force off."},
       {FirstStep::law,
-       "C switches the coupling: the standard one lets hand and world drift apart."}};
+       "C switches the coupling. With the standard coupling, hand and world move apart."}};
   std::vector<std::string> lines;
   // The hint of how to pull the arm comes first.
   if (!task.empty() && done(settings, FirstStep::pull)) lines.push_back(task);
@@ -312,10 +312,10 @@ void ViewPanel::draw_hints(const ViewScene& scene, const Settings& settings, Scr
   hinted_.reset();
   auto lines = hints(task_done_ ? std::string() : task_, scene.pad, settings);
   if (magnet_on_) {
-    lines.insert(lines.begin(),
-                 magnet_broke_ ? "The magnet lost what it held: more pulled at it than it bears. "
-                                 "Press H twice to pick it up again."
-                               : "The magnet is on. H lets go.");
+    lines.insert(lines.begin(), magnet_broke_
+                                    ? "The magnet lost its object, because the pull was too "
+                                      "strong. Press H twice to pick the object up again."
+                                    : "The magnet is on. H lets go.");
   }
   if (lines.empty()) return;
   const float size = face->FontSize * 1.15f, wrap = rect.width() - 3 * face->FontSize;

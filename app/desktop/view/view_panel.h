@@ -29,7 +29,7 @@ struct ViewScene {
   RunNames names = {};                               // of all runs
   bool overlaid = false;                             // all runs in one picture
   std::string told = {};                             // sentence of a story
-  std::string pad = {};  // name of the gamepad that leads the hand; or none
+  std::string pad = {};  // name of the gamepad that moves the hand; or none
   std::optional<Object> selected = {};
   // Returns the body under the mouse, with the point to pull at; null: no body may be pulled.
   std::function<std::optional<BodyPull>(const Ray&)> grasp = {};
@@ -62,7 +62,7 @@ struct ViewRequest {
 
 class ViewPanel {
  public:
-  // Draws the view. The mouse near the tips leads the hand, in the controls; with Ctrl it pulls a
+  // Draws the view. The mouse near the tips moves the hand, in the controls; with Ctrl it pulls a
   // body; elsewhere it turns the camera. `taken`: the mouse belongs to another tool.
   ViewRequest draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
                    ScreenRect rect, bool taken);

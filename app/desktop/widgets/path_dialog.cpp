@@ -146,17 +146,17 @@ void PathDialog::draw_new_folder() {
   }
   if (folder_name_.empty() && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(12 * ImGui::GetFontSize());
-  const bool entered = ImGui::InputTextWithHint(
-      "##folder", "its name; Enter makes it", &folder_name_, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered = ImGui::InputTextWithHint("##folder", "name; Enter creates it", &folder_name_,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
   if (!entered || folder_name_.empty()) return;
   std::error_code error;
   const fs::path folder = fs::path(listed_) / folder_name_;
   if (folder_name_.find('/') != std::string::npos || folder_name_ == "." || folder_name_ == "..") {
     complaint_ = "A folder's name has no / in it.";
   } else if (fs::exists(folder, error)) {
-    complaint_ = fmt::format("{} is there already.", folder_name_);
+    complaint_ = fmt::format("{} exists already.", folder_name_);
   } else if (!fs::create_directory(folder, error)) {
-    complaint_ = fmt::format("{} cannot be made: {}.", folder.string(), error.message());
+    complaint_ = fmt::format("{} cannot be created: {}.", folder.string(), error.message());
   } else {
     go_to(folder);
     listed_.clear();
@@ -241,7 +241,7 @@ fs::path PathDialog::choose() {
     if (file.extension() != options_.extensions.front()) file += options_.extensions.front();
     if (fs::exists(file, none) && file != replaced_) {
       replaced_ = file;
-      complaint_ = fmt::format("{} is there already.", file.filename().string());
+      complaint_ = fmt::format("{} exists already.", file.filename().string());
       return {};
     }
     if (!fs::is_directory(fs::absolute(file).parent_path(), none)) {

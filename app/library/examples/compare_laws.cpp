@@ -45,7 +45,7 @@ int main(int count, char** words) {
     std::fprintf(stderr, "no rows of three angles\n");
     return 1;
   }
-  std::printf("law          error, most [rad]   torque, most [N m]   E_c [mJ]\n");
+  std::printf("law        largest error [rad] largest torque [N m]   E_c [mJ]\n");
   for (const char* law : {"standard", "proposed", "predictive", "direct"}) {
     limpid::LoopOptions options;
     options.settings = {std::string("coupling.kind=") + law};

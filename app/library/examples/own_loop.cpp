@@ -55,7 +55,8 @@ int main() {
     deepest = std::fmax(deepest, x);
   }
   const double wanted = 300 * 0.02 / (300 + wall.stiffness);  // two springs in a row
-  std::printf("deepest %.2f mm, at rest %.2f mm (two springs: %.2f mm), E_c %.2f mJ\n",
-              1e3 * deepest, 1e3 * x, 1e3 * wanted, 1e3 * loop.energy().controller);
+  std::printf(
+      "deepest point %.2f mm, at rest %.2f mm (theory of two springs: %.2f mm), E_c %.2f mJ\n",
+      1e3 * deepest, 1e3 * x, 1e3 * wanted, 1e3 * loop.energy().controller);
   return std::fabs(x - wanted) < 0.1 * wanted ? 0 : 1;
 }

@@ -175,7 +175,7 @@ void declare_loops(py::module_& module) {
 }
 
 PYBIND11_MODULE(_loop, module) {
-  module.doc() = "Limpid's loops; `limpid.Loop` and `limpid.DeviceLoop` are made of them.";
+  module.doc() = "Limpid's basic loops; `limpid.Loop` and `limpid.DeviceLoop` are built on them.";
   py::register_exception<LoopError>(module, "LoopError",
                                     py::module_::import("limpid.errors").attr("LimpidError"));
   declare_options(module);

@@ -221,7 +221,7 @@ class Loop(_AnyLoop):
             raise ArgumentError("hand: is a file; needed: rows of time [s], x, y, z [m] (limpid.run reads files)")
         seconds = 0.0 if duration is None else number("duration", duration)
         if seconds < 0:
-            raise ArgumentError(f"duration: {seconds:g} is not allowed; allowed: seconds, from 0 on")
+            raise ArgumentError(f"duration: {seconds:g} is not allowed; allowed: 0 s or more")
         places, kept = self._places, list(range(self._width))
         if channels is not None:
             places, kept = {}, []

@@ -68,10 +68,11 @@ std::vector<std::array<double, 2>> travel_of(const TomlTable& t) {
   if (!points) return {};
   for (std::size_t i = 1; i < points->size(); ++i) {
     if (!((*points)[i][0] > (*points)[i - 1][0])) {
-      t.refuse("travel", "[travel, force] each, every travel further than the one before");
+      t.refuse("travel",
+               "a list of [travel, force], with each travel larger than the travel before");
     }
   }
-  if (points->empty()) t.refuse("travel", "[travel, force] each, at least one of them");
+  if (points->empty()) t.refuse("travel", "a list of at least one [travel, force]");
   return *points;
 }
 
@@ -88,7 +89,7 @@ void read_limits(const TomlTable& t, BodyJoint& joint) {
   if (const auto limits = t.numbers("limits", 2, kEndless)) {
     joint.low = (*limits)[0];
     joint.high = (*limits)[1];
-    if (!(joint.low < joint.high)) t.refuse("limits", "[from, to], the first less than the second");
+    if (!(joint.low < joint.high)) t.refuse("limits", "[from, to], with from less than to");
   }
 }
 
@@ -130,7 +131,8 @@ void read_mass(const TomlTable& t, Object& object, SceneDocument& out) {
   const auto density = t.number("density", kDensity);
   const bool mass = t.find(kBodyMass.key) != nullptr;
   read_field(t, kBodyMass, *object.body, false);
-  if (mass && density) t.refuse_as("density", "mass or density, not both", "one of them");
+  if (mass && density)
+    t.refuse_as("density", "mass or density, not both", "only mass or only density");
   if (!mass && !density) t.refuse_missing("mass (or density)");
   if (!density) return;
   if (has_shape<Mesh>(object)) {
@@ -188,7 +190,7 @@ void check_joints(const std::vector<TomlTable>& tables, const Scene& scene) {
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (joint_leads_round(scene, first + i)) {
-      tables[i].table("joint")->refuse("to", "a body that does not itself hang on this body");
+      tables[i].table("joint")->refuse("to", "a body that is not itself attached to this body");
     }
   }
 }

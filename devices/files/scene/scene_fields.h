@@ -14,19 +14,19 @@ inline constexpr std::array kMaterialFields{
                     "How hard the object pushes back. Double click to type, right click for the "
                     "default value. The coupling limits how hard a surface can be felt.",
                     {1, 1e4, true}, {.needed = true}),
-    Field<Material>(
-        "damping", "Damping", &Material::damping, scene_limits::kDamping,
-        "Damping while the surface is pressed or released; at 0 the surface returns all energy. "
-        "Only the predictive coupling renders this damping, as far as the tick allows.",
-        {0, 20}),
+    Field<Material>("damping", "Damping", &Material::damping, scene_limits::kDamping,
+                    "Damping while the surface is pressed or released; at 0 the surface returns "
+                    "all energy. Only the predictive coupling renders this damping, up to a limit "
+                    "that depends on the tick.",
+                    {0, 20}),
     Field<Material>("friction_static", "Friction, sticking", &Material::friction_static,
                     scene_limits::kFriction,
-                    "Friction force up to which the tip sticks, as a part of the pressing force. "
+                    "Largest friction force while the tip sticks, divided by the pressing force. "
                     "Rendered by the predictive coupling.",
                     {0, 1}),
     Field<Material>("friction_kinetic", "Friction, slipping", &Material::friction_kinetic,
                     scene_limits::kFriction,
-                    "Friction force while the tip slips, as a part of the pressing force. Rendered "
+                    "Friction force while the tip slips, divided by the pressing force. Rendered "
                     "by the predictive coupling.",
                     {0, 1}),
 };
@@ -67,8 +67,9 @@ inline constexpr std::array kJointKinds{"slider", "hinge", "ball"};
 // The kind comes first: it says which others there are. Not here: axis, limits, travel.
 inline constexpr std::array kJointFields{
     Field<BodyJoint>("kind", "Hangs on", choice<BodyJoint, &BodyJoint::kind>(kJointKinds), {0, 2},
-                     "A slider moves along a line, a hinge turns, a ball joint turns any way.", {},
-                     {.needed = true}),
+                     "A slider moves along a line, a hinge turns about one axis, a ball joint "
+                     "turns about all axes.",
+                     {}, {.needed = true}),
     Field<BodyJoint>("to", "of", &BodyJoint::to, {},
                      "The object, or the world, to which the joint's other half is fixed."),
     Field<BodyJoint>("point", "Joint at", &BodyJoint::point, scene_limits::kPosition,
@@ -77,7 +78,7 @@ inline constexpr std::array kJointFields{
     Field<BodyJoint>("damping", "Damping", &BodyJoint::damping, scene_limits::kJointDamping,
                      "Force that brakes the joint, in proportion to the joint's speed."),
     Field<BodyJoint>("friction", "Dry friction", &BodyJoint::friction, scene_limits::kJointForce,
-                     "Force that is needed to move the joint at all."),
+                     "Smallest force that moves the joint."),
 };
 inline constexpr std::array kStopFields{
     Field<BodyJoint>("stop_stiffness", "Stops' stiffness", &BodyJoint::stop_stiffness,
@@ -90,9 +91,10 @@ inline constexpr std::array kStopFields{
 };
 inline constexpr std::array kForceFields{
     Field<JointForce>("spring", "Spring", &JointForce::spring, scene_limits::kJointSpring,
-                      "A spring that pulls the joint towards its place of rest."),
-    Field<JointForce>("rest", "Rest", &JointForce::rest, scene_limits::kTravel,
-                      "Place where the spring has no force; 0 is the joint's place at the start."),
+                      "A spring that pulls the joint towards its rest position."),
+    Field<JointForce>(
+        "rest", "Rest", &JointForce::rest, scene_limits::kTravel,
+        "Position where the spring has no force; 0: the joint's position at the start."),
 };
 // Keys of the table `detent`.
 inline constexpr std::array kDetentFields{
@@ -112,33 +114,34 @@ inline constexpr std::array kSpringFields{
     Field<BodySpring>("damping", "Damping", &BodySpring::damping, scene_limits::kDamping,
                       "Damping force while the spring's length changes."),
     Field<BodySpring>("breaks_at", "Breaks at", &BodySpring::breaks_at, scene_limits::kBreaking,
-                      "The pull at which the spring breaks; 0: the spring never breaks."),
+                      "The pulling force at which the spring breaks; 0: the spring never breaks."),
 };
 
 // Sizes of a shape.
 inline constexpr std::array kSphereFields{Field<Sphere>("radius", "Radius", &Sphere::radius,
-                                                        scene_limits::kLength, "Of the ball", {},
-                                                        {.needed = true})};
+                                                        scene_limits::kLength, "Radius of the ball",
+                                                        {}, {.needed = true})};
 inline constexpr std::array kBoxFields{Field<Box>("size", "Size", &Box::size, scene_limits::kLength,
-                                                  "Full edges", {}, {.needed = true})};
+                                                  "Full length of each edge", {},
+                                                  {.needed = true})};
 inline constexpr std::array kCylinderFields{
-    Field<Cylinder>("radius", "Radius", &Cylinder::radius, scene_limits::kLength, "Of its faces",
-                    {}, {.needed = true}),
+    Field<Cylinder>("radius", "Radius", &Cylinder::radius, scene_limits::kLength,
+                    "Radius of its round faces", {}, {.needed = true}),
     Field<Cylinder>("length", "Length", &Cylinder::length, scene_limits::kLength,
-                    "From face to face", {}, {.needed = true})};
+                    "Distance from face to face", {}, {.needed = true})};
 inline constexpr std::array kCapsuleFields{
-    Field<Capsule>("radius", "Radius", &Capsule::radius, scene_limits::kLength, "Of its round ends",
-                   {}, {.needed = true}),
+    Field<Capsule>("radius", "Radius", &Capsule::radius, scene_limits::kLength,
+                   "Radius of its round ends", {}, {.needed = true}),
     Field<Capsule>("length", "Length", &Capsule::length, scene_limits::kLength,
-                   "Between the middles of its ends", {}, {.needed = true})};
+                   "Distance between the centres of its round ends", {}, {.needed = true})};
 inline constexpr std::array kMeshFields{
     Field<Mesh>("scale", "Scale", &Mesh::scale, scene_limits::kScale,
-                "1: the model has the size that the file says.")};
+                "1: the model has the size that is given in its file.")};
 
 inline constexpr std::array kSides{"above", "below"};
 inline constexpr std::array kJointStopFields{
-    Field<JointStop>("angle", "Angle", &JointStop::angle, scene_limits::kAngle, "Where it stops",
-                     {}, {.needed = true}),
+    Field<JointStop>("angle", "Angle", &JointStop::angle, scene_limits::kAngle,
+                     "Joint angle of the stop", {}, {.needed = true}),
     Field<JointStop>(
         "side", "Side",
         Choice<JointStop>{

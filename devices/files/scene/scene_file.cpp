@@ -259,7 +259,7 @@ void check_counts(const Scene& scene, const std::string& where) {
         fmt::format("{}: {} objects to touch; at most {}", where, contacts, kMostContacts));
   }
   if (scene.probes.size() + 1 > kMostProbes) {
-    throw FileError(fmt::format("{}: {} probes; at most {} besides the tip", where,
+    throw FileError(fmt::format("{}: {} probes; at most {} in addition to the tip", where,
                                 scene.probes.size(), kMostProbes - 1));
   }
 }

@@ -20,12 +20,12 @@ struct DerivedInfo {
 };
 
 inline constexpr std::array<DerivedInfo, 5> kDerivedInfo{{
-    {"/device/tip", "m", "where the device's tip is"},
-    {"/device/tip_velocity", "m/s", "how fast the device's tip moves"},
-    {"/proxy/tip", "m", "where the proxy's tip is"},
-    {"/proxy/tip_velocity", "m/s", "how fast the proxy's tip moves"},
+    {"/device/tip", "m", "position of the device's tip"},
+    {"/device/tip_velocity", "m/s", "velocity of the device's tip"},
+    {"/proxy/tip", "m", "position of the proxy's tip"},
+    {"/proxy/tip_velocity", "m/s", "velocity of the proxy's tip"},
     {"/contact/total_force", "N",
-     "force on the proxy over the tick: the sum of the contacts in /contact/force"},
+     "force on the proxy during the tick: the sum of all contacts in /contact/force"},
 }};
 inline constexpr std::size_t kDerived = kDerivedInfo.size();
 inline constexpr std::size_t kTotalForce = 4;

@@ -143,8 +143,8 @@ std::vector<BodyPull> pulls_of(const Session& session, const std::string& where)
     const double number = session.at(k, Column::hand_pull)[0];
     if (!(number >= 0 && number <= kMostBodies)) {
       throw FileError(
-          fmt::format("{}: /hand/pull: row {}: {} is not allowed; allowed: 0 to {}, of the "
-                      "bodies, from 1 on",
+          fmt::format("{}: /hand/pull: row {}: {} is not allowed; allowed: 0 (no body) or the "
+                      "number of a body, up to {}",
                       where, k, number, kMostBodies));
     }
     if (number == 0) continue;
@@ -197,7 +197,8 @@ BodyPull HandPath::pull_sample(std::size_t k, double T) const {
 
 HandPath hand_of(const Session& session, const std::string& where) {
   if (session.size() == 0) {
-    throw FileError(fmt::format("{}: the file has no rows, so there is no hand to follow", where));
+    throw FileError(
+        fmt::format("{}: the file has no rows, so there is no motion of a hand", where));
   }
   HandPath path;
   path.source = where;
@@ -261,8 +262,8 @@ HandPath parse_hand_csv(const std::string& text, const std::string& where) {
     }
   }
   if (path.time.size() < 2) {
-    throw FileError(
-        fmt::format("{}: {} samples; needed: a header and at least 2", where, path.time.size()));
+    throw FileError(fmt::format("{}: {} samples; needed: a header and at least 2 samples", where,
+                                path.time.size()));
   }
   start_at_zero(path);
   find_velocities(path);

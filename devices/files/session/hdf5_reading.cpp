@@ -127,7 +127,7 @@ std::string cut_off(const std::filesystem::path& file) {
   std::error_code none;
   const std::uint64_t there = std::filesystem::file_size(file, none);
   if (none || there >= promised) return {};
-  return fmt::format("the file ends after {:.3g} MB of {:.3g}; was the file copied completely?",
+  return fmt::format("the file ends after {:.3g} of {:.3g} MB; was the file copied completely?",
                      1e-6 * static_cast<double>(there), 1e-6 * static_cast<double>(promised));
 }
 
@@ -216,7 +216,7 @@ void check_storage(const Dataset& dataset, const std::string& path, const fs::pa
   const Properties creation(H5Dget_create_plist(dataset.get()));
   if (!creation) refuse(file, path, "not a dataset that can be read");
   if (H5Pget_external_count(creation.get()) != 0) {
-    refuse(file, path, "is stored in other files; allowed: in this file");
+    refuse(file, path, "is stored in other files; allowed: data in this file");
   }
   const H5D_layout_t layout = H5Pget_layout(creation.get());
   if (layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) {
@@ -375,7 +375,7 @@ void check_regular_file(const fs::path& file) {
 void check_before_opening(const fs::path& file) {
   check_regular_file(file);
   if (H5Fis_hdf5(file.c_str()) <= 0) {
-    throw FileError(fmt::format("{}: not an HDF5 file, or cut off", file.string()));
+    throw FileError(fmt::format("{}: not an HDF5 file, or its end is missing", file.string()));
   }
   check_heaps(file);
 }
@@ -428,16 +428,16 @@ void Claims::pass(std::uint64_t count, std::uint64_t size, const std::string& wh
   passed_ = std::min(kEndless, passed_ + bytes);
   if (passed_ / kMostPerByte <= stored_) return;
   refuse(file_, what,
-         fmt::format("claims {} values, more than a file of its size can hold", count));
+         fmt::format("says that it has {} values, more than a file of its size can have", count));
 }
 
 void Claims::take(std::uint64_t count, std::uint64_t size, const std::string& what) {
   pass(count, size, what);
   taken_ += count * size;
   if (taken_ > most_) {
-    refuse(
-        file_, what,
-        fmt::format("larger than this computer's memory: {} MiB of {}", taken_ >> 20, most_ >> 20));
+    refuse(file_, what,
+           fmt::format("larger than this computer's memory: {} MiB; allowed: {}", taken_ >> 20,
+                       most_ >> 20));
   }
 }
 

@@ -29,19 +29,20 @@ std::string now() {
 }
 
 constexpr const char* kConventions =
-    "Row k is the state at /time[k] and the torques held from then to the next row. Units are SI: "
-    "rad, rad/s and N m of joints that turn, m, m/s and N of joints that slide. The attribute unit "
-    "of a dataset has one unit for all of its columns, or one for each joint. Positions, "
-    "velocities and forces at the tip are x, y, z in the frame of the root link of device_urdf. "
-    "The device is the arm in the hand, the proxy its image in the simulated world; contact forces "
-    "act on the proxy. Where nothing touches, /contact/force and /contact/total_force are 0 and "
-    "/contact/point is not a number. Only the program uses /check: it has sums that show damage, "
-    "and what rounding took when units were converted. If you change a dataset, delete /check.";
+    "Row k has the state at /time[k] and the torques that act from this time to the next row. "
+    "Units are SI: rad, rad/s and N m for joints that turn; m, m/s and N for joints that slide. "
+    "The attribute unit of a dataset has one unit for all of its columns, or one unit for each "
+    "joint. Positions, velocities and forces at the tip are x, y, z in the frame of the root link "
+    "of device_urdf. The device is the arm in the hand. The proxy is its image in the simulated "
+    "world; contact forces act on the proxy. Where nothing touches the proxy, /contact/force and "
+    "/contact/total_force are 0 and /contact/point is not a number. Only the program uses /check: "
+    "it has sums that show damage, and the rounding errors of the conversion of units. If you "
+    "change a dataset, delete /check.";
 
 constexpr const char* kBodyConventions =
-    " /objects has what moves, one object behind the other as the attribute names says: its place "
-    "is that of its centre of mass, its rotation a quaternion w, x, y, z from its own frame to "
-    "that of the root link.";
+    " /objects has the objects that move, in the order of the attribute names. The position of an "
+    "object is the position of its centre of mass. Its rotation is a quaternion w, x, y, z from "
+    "its own frame to the frame of the root link.";
 
 void write_arm(hid_t root, const SessionInfo& info, const std::filesystem::path& file) {
   std::vector<std::string> types;
@@ -193,9 +194,9 @@ void SessionFile::create(const SessionInfo& info) {
 void SessionFile::append(std::span<const double> rows, std::size_t lane) {
   const auto stride = static_cast<std::size_t>(layout_.stride());
   if (rows.size() % stride != 0) {
-    throw std::invalid_argument("a session takes whole rows only");
+    throw std::invalid_argument("only complete rows can be written to a session");
   }
-  if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
+  if (!file_) throw FileError(fmt::format("{}: is no longer open for writing", path_.string()));
   while (!rows.empty()) {
     if (!lanes_.at(lane).take(rows)) continue;
     guarded([&] {
@@ -207,28 +208,29 @@ void SessionFile::append(std::span<const double> rows, std::size_t lane) {
 
 void SessionFile::append(const SettingChange& change, std::size_t lane) {
   if (change.setting.size() > kSettingLength) {
-    throw FileError(fmt::format("{}: setting of {} characters, at most {} are kept", path_.string(),
-                                change.setting.size(), kSettingLength));
+    throw FileError(fmt::format("{}: a setting has {} characters; allowed: at most {}",
+                                path_.string(), change.setting.size(), kSettingLength));
   }
-  if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
+  if (!file_) throw FileError(fmt::format("{}: is no longer open for writing", path_.string()));
   lanes_.at(lane).append(change);
 }
 
 void SessionFile::append(const Mark& mark) {
   check_mark(mark, path_);
   if (marks_.count() >= kMostMarks) {
-    throw FileError(fmt::format("{}: {} marks are kept; no more", path_.string(), kMostMarks));
+    throw FileError(
+        fmt::format("{}: a session can have at most {} marks", path_.string(), kMostMarks));
   }
-  if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
+  if (!file_) throw FileError(fmt::format("{}: is no longer open for writing", path_.string()));
   marks_.append(mark);
 }
 
 void SessionFile::append_world(std::span<const double> world, std::size_t lane) {
   if (world.size() > kMostWorld) {
-    throw FileError(fmt::format("{}: {}: {} numbers, at most {} are kept", path_.string(),
+    throw FileError(fmt::format("{}: {}: {} numbers; allowed: at most {}", path_.string(),
                                 kWorldPath, world.size(), kMostWorld));
   }
-  if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
+  if (!file_) throw FileError(fmt::format("{}: is no longer open for writing", path_.string()));
   guarded([&] { lanes_.at(lane).append_world(world); });
 }
 

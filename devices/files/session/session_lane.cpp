@@ -260,8 +260,8 @@ void SessionLane::create_rounding(hid_t group) {
   check(static_cast<bool>(rounding_column_), path_, "cannot write");
   hdf5::write_text(rounding_column_.get(), "unit", "-", path_);
   hdf5::write_text(rounding_column_.get(), "what",
-                   "what the scaling to m and N took of the numbers of joints that slide, in last "
-                   "places; dataset by dataset, joint by joint",
+                   "rounding errors of the scaling to m and N, for joints that slide, in units of "
+                   "the last place; dataset by dataset, joint by joint",
                    path_);
 }
 
@@ -306,7 +306,7 @@ void SessionLane::create_events(hid_t group) {
   hdf5::make_scale(event_row_, "row", path_);
   hdf5::attach_scale(event_setting_, event_row_, 0, path_);
   hdf5::write_text(event_row_.get(), "unit", "-", path_);
-  hdf5::write_text(event_row_.get(), "what", "row from which the setting holds", path_);
+  hdf5::write_text(event_row_.get(), "what", "row from which the setting is used", path_);
   hdf5::write_text(event_setting_.get(), "unit", "-", path_);
   hdf5::write_text(event_setting_.get(), "what", "parameter that changed: key = value", path_);
 }
@@ -316,10 +316,9 @@ void SessionLane::create_world(hid_t group) {
   check(static_cast<bool>(world_), path_, "cannot write");
   hdf5::make_scale(world_, "state", path_);
   hdf5::write_text(world_.get(), "unit", "-", path_);
-  hdf5::write_text(world_.get(), "what",
-                   "state of the objects that move, at the first row: a re-run begins with this "
-                   "state",
-                   path_);
+  hdf5::write_text(
+      world_.get(), "what",
+      "state of the objects that move at the first row; a re-run begins with this state", path_);
 }
 
 void SessionLane::append_world(std::span<const double> world) {
@@ -335,7 +334,7 @@ void SessionLane::create_check(hid_t group) {
   hdf5::write_scalar(sums_.get(), kCheckRows, H5T_STD_I64LE, H5T_NATIVE_INT64, &rows, path_);
   hdf5::write_text(sums_.get(), kCheckColumns, check_columns(layout_), path_);
   hdf5::write_text(sums_.get(), "unit", "-", path_);
-  hdf5::write_text(sums_.get(), "what", "checksum of each column over so many rows", path_);
+  hdf5::write_text(sums_.get(), "what", "checksum of each column for this number of rows", path_);
 }
 
 bool SessionLane::take(std::span<const double>& rows) {

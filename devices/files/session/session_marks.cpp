@@ -82,7 +82,7 @@ void copy_whole(const fs::path& file, int from, int to, const struct stat& as) {
     const ssize_t copied = ::sendfile(to, from, nullptr, kCopiedAtOnce);
     if (copied == 0) return;
     if (copied < 0 && errno != EINTR) {
-      throw FileError(fmt::format("{}: cannot be copied for its marks: {}", file.string(),
+      throw FileError(fmt::format("{}: cannot be copied to add marks: {}", file.string(),
                                   std::strerror(errno)));
     }
   }
@@ -92,8 +92,8 @@ void copy_whole(const fs::path& file, int from, int to, const struct stat& as) {
 
 void check_mark(const Mark& mark, const fs::path& file) {
   if (mark.text.size() <= kMarkLength) return;
-  throw FileError(fmt::format("{}: a mark's text of {} bytes, at most {} are kept", file.string(),
-                              mark.text.size(), kMarkLength));
+  throw FileError(fmt::format("{}: the text of a mark has {} bytes; allowed: at most {}",
+                              file.string(), mark.text.size(), kMarkLength));
 }
 
 void MarkTable::create(hid_t root, const fs::path& file) {
@@ -105,7 +105,7 @@ void MarkTable::create(hid_t root, const fs::path& file) {
   hdf5::make_scale(tick_, "tick", file);
   hdf5::attach_scale(text_, tick_, 0, file);
   hdf5::write_text(tick_.get(), "what", "row that was marked", file);
-  hdf5::write_text(text_.get(), "what", "what was noted there", file);
+  hdf5::write_text(text_.get(), "what", "text of the mark", file);
 }
 
 void MarkTable::flush(const fs::path& file) {
@@ -168,7 +168,7 @@ void write_marks_here(const fs::path& file, int descriptor, const MarkOrder& ord
   hdf5::check_before_opening(file);
   const hdf5::Properties access = hdf5::access_by(descriptor, file);
   hdf5::File opened(H5Fopen(file.c_str(), H5F_ACC_RDWR, access.get()));
-  hdf5::check(static_cast<bool>(opened), file, "cannot be opened for its marks");
+  hdf5::check(static_cast<bool>(opened), file, "cannot be opened to add marks");
   const hid_t root = opened.get();
   hdf5::Claims claims(file);
   const Source times = open_source(root, kColumnInfo[column_index(Column::time)].path, 1, file);
@@ -176,7 +176,8 @@ void write_marks_here(const fs::path& file, int descriptor, const MarkOrder& ord
   const std::vector<Mark> all = merged(order, read_marks(root, times.rows, file, claims));
   for (const Mark& mark : all) {
     if (mark.tick >= times.rows) {
-      refuse(file, fmt::format("has {} rows now, and no row {} to mark", times.rows, mark.tick));
+      refuse(file,
+             fmt::format("has {} rows now, so row {} cannot be marked", times.rows, mark.tick));
     }
   }
   if (all.size() > kMostMarks) {
@@ -210,7 +211,8 @@ void write_marks(const fs::path& session, std::span<const Mark> marks,
     write_marks_into(session, copy.descriptor(),
                      {{marks.begin(), marks.end()}, {known.begin(), known.end()}});
     if (!(Version::of(locked) == Version::of(about(file)))) {
-      throw FileError(fmt::format("{}: another program changed it meanwhile", session.string()));
+      throw FileError(
+          fmt::format("{}: another program changed the file in the meantime", session.string()));
     }
     return copy.keep();
   }

@@ -85,7 +85,7 @@ SessionInfo take_info(Reader& from) {
   info.dof = from.number<int>();
   // Checks as check_session_info() does, which names what is wrong with a file.
   if (!(info.tick > 0 && info.tick <= 0.1) || info.dof < 1 || info.dof > kMaxDof) {
-    throw Broken("no arm of that kind");
+    throw Broken("an arm that is not possible");
   }
   info.seed = from.number<std::uint64_t>();
   each_text(info, [&](std::string& text) { text = from.text(); });
@@ -116,7 +116,7 @@ std::uint64_t take_rows(Reader& from, const Session& about, std::uint64_t claime
     const auto next = from.number<Answer>();
     if (next == Answer::refusal) throw FileError(from.text());
     if (next == Answer::end) return rows;
-    if (next != Answer::rows) throw Broken("no piece of a session");
+    if (next != Answer::rows) throw Broken("a message that is not part of a session");
     std::array<std::vector<double>, kMostLanes> lists;
     std::array<std::span<const double>, kMostLanes> pieces;
     for (std::size_t i = 0; i < about.lanes(); ++i) {
@@ -139,7 +139,7 @@ constexpr int kPipeBytes = 1 << 20;
 std::string why_ended(int status) {
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) return {};
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
-    return "takes far longer to be read than a file of its size needs";
+    return "cannot be read: reading takes much longer than normal for a file of this size";
   }
   return why_failed(status, kSessionProgram);
 }
@@ -150,7 +150,7 @@ template <class Take>
 auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> given = {}) {
   std::array<int, 2> ends{-1, -1};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    refuse(file, "cannot be read, there are too many open files");
+    refuse(file, "cannot be read: too many files are open");
   }
   const Descriptor answers(ends[0]);
   Descriptor other_end(ends[1]);
@@ -173,7 +173,7 @@ auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> g
                                            broken.what())
                              : why);
   } catch (const NoRoom& none) {
-    refuse(file, fmt::format("larger than this computer has room for: {}", none.what()));
+    refuse(file, fmt::format("is too large for this computer: {}", none.what()));
   } catch (const std::bad_alloc&) {
     refuse(file, "larger than this computer's memory");
   }
@@ -376,7 +376,7 @@ void write_marks_into(const fs::path& file, int descriptor, const MarkOrder& ord
     wire::Writer to(*orders);
     wire::put_order(to, order);
   } catch (const wire::Broken&) {
-    refuse(file, "there is no memory for its marks");
+    refuse(file, "not enough memory to add marks");
   }
   ::lseek(*orders, 0, SEEK_SET);
   ask("marks", file, [](wire::Reader& from) { return from.number<std::uint8_t>(); },

@@ -90,7 +90,8 @@ hdf5::File open(const fs::path& file) {
   if (opened) return opened;
   const std::string reason = hdf5::why_not_opened(file);
   if (open_as(file, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ)) {
-    refuse(file, "was never closed; let the file's name end in .part and use `limpid recover`");
+    refuse(file,
+           "was never closed; add .part to the end of the file's name and use `limpid recover`");
   }
   refuse(file, "cannot open: " + reason);
 }
@@ -107,8 +108,8 @@ std::vector<bool> read_slides(hid_t root, int dof, const fs::path& file) {
     slides.push_back(type == kSlidingType);
   }
   if (slides.size() != static_cast<std::size_t>(dof)) {
-    refuse(file, fmt::format("attribute {}: {} joints; needed: {}, as dof says", kJointTypes,
-                             slides.size(), dof));
+    refuse(file, fmt::format("attribute {}: {} joints; needed: {}, the number in the attribute dof",
+                             kJointTypes, slides.size(), dof));
   }
   return slides;
 }
@@ -176,7 +177,8 @@ std::vector<hdf5::Group> groups_beside(hid_t root, const fs::path& file) {
   std::vector<hdf5::Group> groups;
   for (std::size_t i = 1; hdf5::has(root, lane_name(i), file); ++i) {
     if (i == kMostLanes) {
-      refuse(file, fmt::format("/{}: more runs than {}, the most", lane_name(i), kMostLanes));
+      refuse(file, fmt::format("/{}: more runs than {}, the largest number allowed", lane_name(i),
+                               kMostLanes));
     }
     groups.push_back(hdf5::open_group(root, lane_name(i), file));
   }
@@ -248,8 +250,8 @@ void read_changes(hid_t root, std::size_t size, Session& session, const fs::path
   for (std::size_t i = 0; i < std::min(rows.size(), settings.size()); ++i) {
     if (is_leftover(file) && rows[i] >= size) break;
     if (rows[i] > size || (i > 0 && rows[i] < rows[i - 1])) {
-      refuse(file, fmt::format("/events/row: entry {}: row {}; needed: increasing, at most {}", i,
-                               rows[i], size));
+      refuse(file, fmt::format("/events/row: entry {}: row {}; needed: increasing rows, at most {}",
+                               i, rows[i], size));
     }
     session.changes.push_back({rows[i], settings[i]});
   }
@@ -446,7 +448,7 @@ std::vector<double> column(hid_t root, const std::string& path, const fs::path& 
   const hdf5::Dataset dataset = hdf5::open_dataset(root, path, file);
   const hdf5::Dataspace space(H5Dget_space(dataset.get()));
   const hssize_t count = H5Sget_simple_extent_npoints(space.get());
-  if (count < 0) refuse(file, fmt::format("damaged: {}: no list of numbers", path));
+  if (count < 0) refuse(file, fmt::format("damaged: {}: not a list of numbers", path));
   claims.stored(dataset);
   claims.take(static_cast<std::uint64_t>(count), sizeof(double), path);
   std::vector<double> values(static_cast<std::size_t>(count));
@@ -534,7 +536,7 @@ wire::Table read_table_here(const fs::path& file) {
   {
     const hdf5::File looked_at(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
     if (!looked_at || H5Lexists(looked_at.get(), kMeasures, H5P_DEFAULT) <= 0) {
-      refuse(file, "damaged, or no table of a sweep");
+      refuse(file, "damaged, or not the table of a sweep");
     }
   }
   const hdf5::File opened = hdf5::open_to_read(file);

@@ -57,7 +57,8 @@ class PackedCopy {
       draft_.emplace(out);
       // A draft with a name would stay if the program is killed.
       if (draft_->has_name())
-        throw FileError("this folder cannot hold a file without a name, as the packed copy needs");
+        throw FileError(
+            "this folder cannot have a file without a name, but the packed copy needs such a file");
       file_.emplace(out, draft_->descriptor(), info, Storage::packed);
     });
   }
@@ -228,7 +229,7 @@ Recovered recover_session(const fs::path& part, bool force, const fs::path& to) 
     throw FileError(fmt::format("{}: {}", part.string(), why));
   }
   if (std::error_code none; fs::equivalent(out, part, none)) {
-    throw FileError(fmt::format("{}: is the file to recover; name another one", out.string()));
+    throw FileError(fmt::format("{}: is the file to recover; choose another name", out.string()));
   }
   check_place(out, force);
   const WriteLock lock(part, WriteLock::Make::no);

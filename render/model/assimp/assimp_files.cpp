@@ -84,7 +84,8 @@ void guard(std::string_view text, std::string_view word, std::size_t size) {
       const auto end = rest.find_first_of(" \t\n");
       rest = end == rest.npos ? "" : rest.substr(end);
     }
-    if (number_in(rest) > size) throw std::runtime_error("says that it has more than fits into it");
+    if (number_in(rest) > size)
+      throw std::runtime_error("says that it has more data than a file of its size can have");
   }
 }
 
@@ -216,9 +217,9 @@ std::vector<unsigned char> AssimpFiles::read(const std::string& file) {
       return std::move(*found);
     }
   } catch (const std::runtime_error&) {
-    why = " lies outside of the model's folder, or is too large";
+    why = " is outside the model's folder, or is too large";
   }
-  warnings_.push_back("\"" + one_line(file) + "\"" + why + ", it is left out");
+  warnings_.push_back("\"" + one_line(file) + "\"" + why + ", so it is ignored");
   return {};
 }
 
@@ -226,7 +227,7 @@ void guard_counts(std::span<const unsigned char> bytes, const std::string& kind)
   const std::string_view text = text_of(bytes);
   if (kind == "ply") {
     const auto end = text.find("end_header");
-    if (end == text.npos) throw std::runtime_error("is cut off: its header has no end_header");
+    if (end == text.npos) throw std::runtime_error("is not complete: its header has no end_header");
     guard(text.substr(0, end), "element ", text.size());
   }
   if (kind == "dae") {

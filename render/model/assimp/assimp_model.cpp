@@ -95,11 +95,12 @@ std::string in_words(const std::string& why) {
   for (const char* said : {"No meshes remaining", "invalid primitive type", "no facets"})
     if (why.find(said) != why.npos) return kNoTriangles;
   if (why.find("STL storage representation") != why.npos)
-    return "is no STL: its length does not fit its number of triangles, and it is no text either";
+    return "is not an STL file: its length does not match its number of triangles, and it is not a "
+           "text file";
   constexpr std::string_view kNoNumber = "Cannot parse string \"";
   if (const std::size_t at = why.find(kNoNumber); at != why.npos) {
     const std::string found = why.substr(at + kNoNumber.size());
-    return "a number is expected, and there is \"" +
+    return "there should be a number, but there is \"" +
            found.substr(0, found.find_first_of("?\n\r\"")) + "\"";
   }
   return why.empty() ? "is not valid" : why;
@@ -164,9 +165,9 @@ void Builder::add_vertices(const aiMesh& mesh, bool normals, const Eigen::Affine
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     Vertex& v = model_.vertices[first + place[i]];
     v.position = (to_model * vec(mesh.mVertices[i]).cast<double>()).cast<float>();
-    if (!v.position.allFinite()) refuse("a vertex is not a finite number");
+    if (!v.position.allFinite()) refuse("a vertex has a coordinate that is not a finite number");
     if (v.position.cwiseAbs().maxCoeff() >= kFarthest)
-      refuse("a vertex is farther than a million from the origin");
+      refuse("a vertex is more than a million units from the origin");
     v.normal.setZero();
     if (normals) {
       const Eigen::Vector3f n = turn * vec(mesh.mNormals[i]);
@@ -191,12 +192,13 @@ void Builder::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& to_model) {
   if (!to_model.matrix().allFinite()) refuse("has a transform that is not finite");
   if (mesh.mNumFaces == 0 || !mesh.HasPositions()) return;
   if ((triangles_ += mesh.mNumFaces) > kMostTriangles)
-    refuse("has more than 6 million triangles, all nodes counted");
+    refuse("has more than 6 million triangles in all nodes together");
   const bool normals = use_normals_ && mesh.HasNormals();
   std::vector<unsigned> place;
   const std::size_t count = weld(mesh, normals, place);
   const std::size_t first = model_.vertices.size();
-  if (first + count > kMostVertices) refuse("has more than 8 million vertices over all nodes");
+  if (first + count > kMostVertices)
+    refuse("has more than 8 million vertices in all nodes together");
   add_vertices(mesh, normals, to_model, place, count);
 
   std::vector<std::uint32_t> corners;
@@ -207,7 +209,7 @@ void Builder::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& to_model) {
     if (face.mNumIndices != 3) continue;
     std::array<std::uint32_t, 3> at{};
     for (std::size_t k = 0; k < 3; ++k) {
-      if (face.mIndices[k] >= mesh.mNumVertices) refuse("names a vertex that does not exist");
+      if (face.mIndices[k] >= mesh.mNumVertices) refuse("refers to a vertex that does not exist");
       at[k] = place[face.mIndices[k]];
     }
     if (mirrored) std::swap(at[0], at[1]);

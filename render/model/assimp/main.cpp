@@ -62,7 +62,7 @@ int main(int count, char** words) {
   try {
     const std::string name = "model", kind = words[1];
     const limpid::ModelKind* const known = limpid::model_kind(name + "." + kind);
-    if (known == nullptr) throw std::runtime_error("is of no kind that is known: " + kind);
+    if (known == nullptr) throw std::runtime_error("is of an unknown kind: " + kind);
     const auto bytes = standard_input();
     std::size_t size = bytes.size();
     limit_self(size);
@@ -83,7 +83,7 @@ int main(int count, char** words) {
       std::fprintf(lines, "warning %s\n", warning.c_str());
     if (read.outside) std::fputs("outside\n", lines);
     if (!limpid::write_all(STDOUT_FILENO, limpid::glb_of(read.model, read.pictures))) {
-      throw std::runtime_error("is too large for the memory");
+      throw std::runtime_error("is too large for this computer's memory");
     }
     return std::fclose(lines) == 0 ? 0 : 1;
   } catch (const std::bad_alloc&) {

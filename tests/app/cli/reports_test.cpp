@@ -70,18 +70,19 @@ TEST(LookReport, SaysInLinesWhatWasSeen) {
   const std::string text = look_text(device, *seen(device, 0.2));
   for (const char* line :
        {"device +Stick, a test, stick:1\n", "arm +nobody knows another\n",
-        "driven by +limpid-vendor\n", "motors +the device has motors, and got no force\n",
+        "driven by +limpid-vendor\n", "motors +the device has motors; the motors got no force\n",
         "axes +as the device reports them; not checked yet\n", "joints +2\n",
-        "readings +1001, 1000 a second .1000 declared.; time between two: median 1.0[0-9] ms",
+        "readings +1001, 1000 per second .1000 declared.; time between two readings: median "
+        "1.0[0-9] ms",
         "turns .rad. +0 to 0.4 +-0.5 to 0.25 +0.1 +0.001 ",
-        "range +turns went beyond the range that it declares\n", "buttons +pressed: 1, 3\n",
-        "hand +no hand on the switch for 0.25 s\n", "calibration +not calibrated for 0.25 s\n",
+        "range +turns left the range that the device declares\n", "buttons +pressed: 1, 3\n",
+        "hand +nobody holds the switch for 0.25 s\n", "calibration +not calibrated for 0.25 s\n",
         "fault +reported for 0.10 s\n", "device.s force off +0.50 s: ",
         "warmth +at most 50 % of the hottest motor.s thermal limit"}) {
     EXPECT_THAT(text, ContainsRegex(line));
   }
   EXPECT_THAT(text, Not(HasSubstr("never moved")));
-  EXPECT_THAT(text, Not(HasSubstr("slides went beyond")));
+  EXPECT_THAT(text, Not(HasSubstr("slides left the range")));
   EXPECT_THAT(text, Not(HasSubstr("wrong readings")));
   EXPECT_THAT(text, HasSubstr(device_words({.no_force = NoForce::warm})));
 }
@@ -94,14 +95,15 @@ TEST(LookReport, SaysThatNothingWasWrong) {
   device.traits.upper[0] = 0.4;
   device.checked = true;
   const std::string text = look_text(device, *seen(device, 0, false));
-  for (const char* line : {"motors +the device has none\n", "axes +adjusted as they were checked\n",
-                           "range +slides never moved: move each joint to its ends\n",
-                           "buttons +no button was pressed\n",
-                           "hand +on the switch all the time, or the device has no switch\n",
-                           "calibration +no complaint\n", "fault +none\n"}) {
+  for (const char* line :
+       {"motors +the device has no motors\n", "axes +adjusted as found in the check of the axes\n",
+        "range +slides never moved: move each joint to its ends\n",
+        "buttons +no button was pressed\n",
+        "hand +held the switch all the time, or the device has no switch\n",
+        "calibration +no problem reported\n", "fault +none\n"}) {
     EXPECT_THAT(text, ContainsRegex(line));
   }
-  for (const char* none : {"driven by", "declared)", "went beyond", "turns never moved",
+  for (const char* none : {"driven by", "declared)", "left the range", "turns never moved",
                            "device's force off", "warmth", "wrong readings"}) {
     EXPECT_THAT(text, Not(HasSubstr(none)));
   }
@@ -200,10 +202,11 @@ TEST(MeasuredReport, HasEveryNumberOfAHand) {
   std::fflush(stdout);
   EXPECT_THAT(
       testing::internal::GetCapturedStdout(),
-      AllOf(HasSubstr("the grip, measured         known; bounds hold for 95 of 100 grips\n"),
-            HasSubstr("stiffness                  312 \xC2\xB1 12 N/m\n"),
-            HasSubstr("given to the hand          4.2 mJ by the measuring force; the tip "
-                      "moved up to 3.1 mm\n")));
+      AllOf(
+          HasSubstr("the grip, measured         known; the bounds are right for 95 of 100 grips\n"),
+          HasSubstr("stiffness                  312 \xC2\xB1 12 N/m\n"),
+          HasSubstr("given to the hand          4.2 mJ by the measuring force; the tip "
+                    "moved up to 3.1 mm\n")));
 }
 
 TEST(MeasuredReport, SaysWhyAHandIsNotKnown) {
@@ -284,17 +287,17 @@ TEST(HandsReport, SaysOfEveryLawWhatIsKnown) {
   const std::string text = testing::internal::GetCapturedStdout();
   const auto key = [](std::uint8_t i) { return std::string(kLawKeys[i]); };
   for (const std::string& line :
-       {std::string("in hands of 100 to 3000 N/m, 2 N s/m and 0.1 kg\n"),
-        "stable walls, " + key(0) + " +1234 N/m  by theory; in the hand of 300 N/m\n",
+       {std::string("for hands with 100 to 3000 N/m, 2 N s/m and 0.1 kg\n"),
+        "stable walls, " + key(0) + " +1234 N/m  by theory; the hand of 300 N/m sets this limit\n",
         "stable walls, " + key(1) + " +every wall  a\n",
         "passive walls, " + key(0) + " +not known  nobody knows\n",
         "passive walls, " + key(1) + " +none  b\n",
         std::string("eta, proposed +0.7421  the smallest eta that is stable in all these hands\n"),
         std::string("Colgate +2000 N/m  rule one\n +source one\n"),
         std::string("Abbott +no bound  rule two\n +source two\n"),
-        std::string("eta_min, proposed +0.5930  .25.\n"),
-        key(2) + " +lowest value 0.5 at 12 Hz: fails from 7.5 Hz on; reckoned\n",
-        key(3) + " +lowest value 1.5 at 3 Hz: holds; reckoned\n", key(0) + " +reckoned\n"}) {
+        std::string("eta_min, proposed +0.5930  equation .25.\n"),
+        key(2) + " +lowest value 0.5 at 12 Hz: not fulfilled from 7.5 Hz upwards; reckoned\n",
+        key(3) + " +lowest value 1.5 at 3 Hz: fulfilled; reckoned\n", key(0) + " +reckoned\n"}) {
     EXPECT_THAT(text, ContainsRegex(line));
   }
 }

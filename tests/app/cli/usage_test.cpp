@@ -120,7 +120,7 @@ TEST_F(Usage, HasEveryOptionBehindItsCommand) {
   EXPECT_THAT(refused({"--scene", "table.toml", "run"}),
               HasSubstr("--scene: stands before the command; write limpid run --scene ..."));
   EXPECT_THAT(refused({"--ui-scale", "1", "run"}),
-              HasSubstr("--ui-scale: is of the window, and limpid run opens none"));
+              HasSubstr("--ui-scale: is an option of the window, and limpid run opens no window"));
   EXPECT_THAT(refused({"table.toml", "run"}), HasSubstr("not expected before run"));
   EXPECT_THAT(refused({"table.toml", "play", "table.h5"}),
               HasSubstr("stands before the command play"));

@@ -79,7 +79,7 @@ TEST_F(Work, OfASweepRunsOnePointAgain) {
   EXPECT_THAT(done({"info", recorded.substr(0, recorded.find('\n'))}),
               HasSubstr("predictive, eta 1\n"));
   EXPECT_THAT(refused({"sweep", file, "--out", "swept", "--open", "4"}),
-              HasSubstr("--open 4: is not allowed; allowed: a point from 0 to 3"));
+              HasSubstr("--open 4: is not allowed; allowed: the number of a point, 0 to 3"));
   EXPECT_THAT(refused({"sweep", file, "--out", "swept", "--open", "-1"}),
               HasSubstr("whole number"));
   EXPECT_EQ(run({"sweep", file, "--out", "swept", "--open", "3", "--csv"}).status, 2);
@@ -90,7 +90,7 @@ TEST_F(Work, OfASweepRunsOnePointAgain) {
 TEST_F(Work, OfASweepNeedsWhatBelongsTogether) {
   const std::string file = plan();
   EXPECT_THAT(refused({"sweep", file, "--out", "o", "--mpi"}),
-              HasSubstr("--mpi: no rank among many"));
+              HasSubstr("--mpi: this process is not one of many"));
   for (const auto& [one, other] : {std::pair("--mpi", "--slurm"), std::pair("--gather", "--mpi")}) {
     EXPECT_EQ(run({"sweep", file, "--out", "o", one, other}).status, 2);
   }
@@ -149,13 +149,14 @@ TEST_F(Work, OfAnExperimentTakesAnArm) {
 
 TEST_F(Work, OfAnExperimentSaysWhichArmItDoesNotTake) {
   for (const auto& [words, why] :
-       {std::pair(std::vector<std::string>{"robust", "--device", "touch.urdf"},
-                  "robust: takes no arm, as it has its own: an ideal arm and a Touch"),
+       {std::pair(
+            std::vector<std::string>{"robust", "--device", "touch.urdf"},
+            "robust: accepts no --arm, because it has arms of its own: an ideal arm and a Touch"),
         {{"zwidth", "--device", "touch.urdf", "--readings"}, "zwidth: takes no --readings"},
         {{"passivity", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
         {{"all", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
         {{"coordination", "--device", "omega.urdf"},
-         "joints' names and the motion of the built-in arm"},
+         "the same joint names and the same motion as the built-in arm"},
         {{"inertia", "--readings"}, "--readings: the file of the arm omni has neither"},
         {{"inertia", "--device", "none.urdf"}, "none.urdf"},
         {{"inertia", "--device", "touch.urdf", "--set", "coupling.eta=2"}, "--set: only together"},
@@ -241,9 +242,9 @@ TEST_F(Work, OfAVideoShowsTheSessionAsItIs) {
         << option;
   }
   EXPECT_THAT(refused({"play", "table.h5", "--video", "o.mp4", "--listen", "x"}),
-              HasSubstr("--listen: is of the window"));
+              HasSubstr("--listen: is an option of the window"));
   EXPECT_THAT(refused({"play", "table.h5", "--video", "o.mp4", "--print-state"}),
-              HasSubstr("--print-state: is of the window"));
+              HasSubstr("--print-state: is an option of the window"));
   EXPECT_EQ(run({"play", "table.h5", "--fps", "20"}).status, 2) << "of --video";
   EXPECT_EQ(run({"play", "table.h5", "--video", "o.mp4", "--speed", "0.009"}).status, 2);
   EXPECT_EQ(run({"play", "table.h5", "--video", "o.mp4", "--speed", "101"}).status, 2);
@@ -310,13 +311,13 @@ TEST_F(Work, OfIdentifyingNeedsADeviceAndAFolder) {
   EXPECT_THAT(refused({"identify"}), HasSubstr("--out is required"));
   EXPECT_THAT(
       refused({"identify", "--out", "o"}),
-      HasSubstr("no device is chosen; `limpid devices` lists their ids, and \"simulated\""));
+      HasSubstr("no device is chosen; `limpid devices` lists the devices' ids, and \"simulated\""));
   for (const char* wrong : {"0,0", "0,0,-30", "0,0,-9.81,1", "a,b,c", "0,0,nan", "0,0,-9.81x"}) {
     EXPECT_THAT(refused({"identify", "simulated", "--out", "o", "--gravity", wrong}),
                 HasSubstr("needed: none, or X,Y,Z in m/s^2"));
   }
   EXPECT_THAT(refused({"identify", "simulated", "--out", "o", "--masses-right"}),
-              HasSubstr("the simulated device has other masses"));
+              HasSubstr("the masses of the simulated device differ"));
   EXPECT_THAT(refused({"identify", "--out", "o", "--yes", "--load", "0.1"}),
               HasSubstr("--yes: not together with --load: a person must be asked"));
   EXPECT_EQ(run({"identify", "--out", "o", "--range", "0.04"}).status, 2);

@@ -121,7 +121,7 @@ TEST_F(ATakenArm, HoldsAnArmThatACommandNamesToTheDeviceAsWell) {
   const ArmDescription four = read_urdf(write("four.urdf", long_arm(4)));
   const TakenArm other = taken_arm({}, &kRaw, traits, &four);
   EXPECT_EQ(other.arm.name, "omni");
-  EXPECT_THAT(other.why, HasSubstr("long of 4 joints, and has 3 joints now"));
+  EXPECT_THAT(other.why, HasSubstr("long of 4 joints. The device has 3 joints now"));
 }
 
 TEST_F(ATakenArm, IsAskedAnewWhereAnotherDeviceAnswersUnderTheId) {
@@ -144,12 +144,12 @@ TEST_F(ATakenArm, SaysThatADeviceHasOtherJointsNowThanItWasIdentifiedWith) {
   EXPECT_FALSE(taken.known);
   EXPECT_EQ(taken.arm.dof(), 3);
   EXPECT_THAT(taken.why, HasSubstr("was identified as the arm"));
-  EXPECT_THAT(taken.why, HasSubstr("of 2 joints, and has 3 joints now"));
+  EXPECT_THAT(taken.why, HasSubstr("of 2 joints. The device has 3 joints now"));
   try {
     taken_arm(notes, &kRaw, test::pushing(5, 3));
     ADD_FAILURE() << "no built-in arm has five joints";
   } catch (const UnknownArmError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("of 2 joints, and has 5 joints now"));
+    EXPECT_THAT(error.what(), HasSubstr("of 2 joints. The device has 5 joints now"));
     EXPECT_THAT(error.what(), HasSubstr("identify --forget"));
     EXPECT_THAT(error.what(), HasSubstr("--arm"));
   }
@@ -170,7 +170,7 @@ TEST_F(ATakenArm, OfADeviceThatSaysItselfWhichItIsIsThatOne) {
   notes.arm = write("strange.urdf", urdf_text(strange, "strange"));
   const TakenArm taken = taken_arm(notes, &kInverse, cursor);
   EXPECT_EQ(taken.arm.urdf, own.urdf);
-  EXPECT_THAT(taken.why, HasSubstr("has other joints than the device's own arm"));
+  EXPECT_THAT(taken.why, HasSubstr("has different joints than the device's own arm"));
 }
 
 TEST_F(ATakenArm, IsRefusedWhereTheDeviceIsNeverInItsRange) {

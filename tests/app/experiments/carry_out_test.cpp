@@ -133,7 +133,8 @@ Outcome runs_away(TrialRunner& lab) {
 TEST_F(CarryOut, CallsATrialThatDivergedAFailureAndSaysTheConditions) {
   const Outcome outcome = carry_out({"away", "about", runs_away}, in(dir_));
   EXPECT_FALSE(outcome.passed());
-  EXPECT_EQ(outcome.checks.back().what, "trials that diverged, of those that may not");
+  EXPECT_EQ(outcome.checks.back().what,
+            "number of diverged trials, among the trials that must not diverge");
   EXPECT_EQ(outcome.checks.back().value, 1);
   EXPECT_THAT(outcome.figure.caption, HasSubstr("Conditions: arm omni"));
 }

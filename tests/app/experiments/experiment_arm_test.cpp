@@ -75,8 +75,10 @@ TEST(ExperimentArm, MovesAsTheBuiltInOneIfItsJointsDo) {
 TEST(WhyNot, NamesTheExperimentAndTheReason) {
   const ExperimentArm touch = touch_with_readings();
   EXPECT_EQ(why_not(experiment("coordination"), touch), "");
-  EXPECT_THAT(why_not(experiment("robust"), touch),
-              HasSubstr("robust: takes no arm, as it has its own: an ideal arm and a Touch"));
+  EXPECT_THAT(
+      why_not(experiment("robust"), touch),
+      HasSubstr(
+          "robust: accepts no --arm, because it has arms of its own: an ideal arm and a Touch"));
   EXPECT_THAT(why_not(experiment("zwidth"), touch), HasSubstr("zwidth: takes no --readings"));
   ExperimentArm exact = touch;
   exact.readings = false;
@@ -146,7 +148,7 @@ TEST(AnExperimentOnAnotherArm, RunsItsTrialsOnThatArmWithItsReadings) {
     EXPECT_THROW(e.run(lab), Cancelled) << e.name;
     EXPECT_THAT(lab.conditions().text(), HasSubstr("arm mine of 3 joints")) << e.name;
     if (*e.own_readings != '\0') continue;
-    EXPECT_THAT(lab.conditions().text(), HasSubstr("1.5e-06 rad a step")) << e.name;
+    EXPECT_THAT(lab.conditions().text(), HasSubstr("1.5e-06 rad per encoder step")) << e.name;
   }
 }
 
@@ -161,12 +163,12 @@ TEST(AnExperimentOnAnotherArm, MeasuresWithItsGainsAndSaysOnWhichArm) {
   EXPECT_THAT(outcome.figure.title, HasSubstr(", on touch with its readings"));
   EXPECT_THAT(outcome.figure.caption, HasSubstr("gains coupling.k_vc 4 N m/rad"));
   EXPECT_THAT(outcome.figure.caption, HasSubstr("arm touch of 3 joints"));
-  EXPECT_THAT(outcome.figure.caption, HasSubstr("0.000419 rad a step of the encoders; 1 ms of"));
+  EXPECT_THAT(outcome.figure.caption, HasSubstr("0.000419 rad per encoder step; 1 ms of"));
   for (const Check& c : outcome.checks) {
     if (c.what.find("diverged") != std::string::npos) {
       EXPECT_TRUE(c.unjudged.empty()) << "a trial that diverged is a failure on any arm";
     } else {
-      EXPECT_THAT(c.unjudged, HasSubstr("Promised for the built-in arm alone: at ")) << c.what;
+      EXPECT_THAT(c.unjudged, HasSubstr("Promised only for the built-in arm: at ")) << c.what;
     }
   }
   const auto verdict = nlohmann::json::parse(std::ifstream(temp / "coordination.json"));
@@ -174,7 +176,8 @@ TEST(AnExperimentOnAnotherArm, MeasuresWithItsGainsAndSaysOnWhichArm) {
   write_report(temp / ".");
   std::stringstream page;
   page << std::ifstream(temp / "report.html").rdbuf();
-  EXPECT_THAT(page.str(), HasSubstr("1 measured on an arm for which no bound is promised."));
+  EXPECT_THAT(page.str(),
+              HasSubstr("Without a verdict, because no bound is promised for the arm: 1."));
   EXPECT_THAT(page.str(), testing::Not(HasSubstr("experiments passed")));
 }
 
@@ -184,7 +187,7 @@ TEST(AnExperimentOnAnotherArm, DoesNotPassForLackOfWhatItMissed) {
   EXPECT_TRUE(outcome.passed()) << "nothing is promised";
   // Friction of 0.26 N at the tip is not scaled by eta.
   EXPECT_GT(outcome.checks.front().value, outcome.checks.front().bound);
-  EXPECT_THAT(outcome.checks.front().unjudged, HasSubstr("misses this bound"));
+  EXPECT_THAT(outcome.checks.front().unjudged, HasSubstr("does not keep this bound"));
 }
 
 double hardest(const fs::path& file) {

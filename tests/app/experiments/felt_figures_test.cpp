@@ -101,18 +101,20 @@ TEST(FiguresOf, LightnessShowEtaBesideWhatIsFelt) {
   }
   // 1 - eta times the inertia times the band in rad/s.
   const Series& least =
-      made.curve("Damping felt at 0.5 Hz", "least damping of any passive law with this inertia");
+      made.curve("Damping felt at 0.5 Hz", "smallest damping of any passive law with this inertia");
   const double at_none = least.points.front().y / (1 - least.points.front().x);
   expect_on(least, [&](double eta) { return at_none * (1 - eta); });
   EXPECT_NEAR(at_none / (kTwoPi * Parameters{}.band), 3.1e-4, 2e-4) << "kg m^2 of the arm";
-  const Series& bound = made.curve("Cost of lightness: damping at 0.5 Hz over inertia at 2 Hz",
-                                   "least damping of any passive law, inertia kept up to 5.3 Hz");
+  const Series& bound =
+      made.curve("Cost of a light device: damping at 0.5 Hz against inertia at 2 Hz",
+                 "smallest damping of any passive law that keeps this inertia up to 5.3 Hz");
   EXPECT_EQ(bound.points.front().x, 0);
   EXPECT_NEAR(bound.points.front().y, at_none, 1e-12);
   EXPECT_EQ(bound.points.back().x, 1);
   EXPECT_EQ(bound.points.back().y, 0);
-  const Series& cost = made.curve("Cost of lightness: damping at 0.5 Hz over inertia at 2 Hz",
-                                  "predictive, eta 0.2 to 1");
+  const Series& cost =
+      made.curve("Cost of a light device: damping at 0.5 Hz against inertia at 2 Hz",
+                 "predictive, eta 0.2 to 1");
   ASSERT_EQ(cost.points.size(), 4u) << "0.2, 0.3, 0.5 and 1";
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(cost.points[i].x, made.curve("Inertia felt at 2 Hz", "predictive").points[i].y);
@@ -122,8 +124,8 @@ TEST(FiguresOf, LightnessShowEtaBesideWhatIsFelt) {
 
 TEST(FiguresOf, LightnessSortTheProposedLawByItsEta) {
   const Made made("lightness");
-  const std::string low = "Proposed, eta to 1, and standard: inertia felt (dashed: eta)",
-                    high = "Proposed, eta above 1: inertia felt (dashed: eta)";
+  const std::string low = "Proposed with eta up to 1, and standard: inertia felt (dashed: eta)",
+                    high = "Proposed with eta above 1: inertia felt (dashed: eta)";
   const auto labels = [&](const std::string& title) {
     std::vector<std::string> all;
     for (const Series& s : made.panel(title).series) {
@@ -132,20 +134,20 @@ TEST(FiguresOf, LightnessSortTheProposedLawByItsEta) {
     return all;
   };
   EXPECT_THAT(labels(low), testing::UnorderedElementsAre("eta = 0.2", "eta = 0.3", "eta = 0.5",
-                                                         "eta = 1", "standard, on eta = 1"));
+                                                         "eta = 1", "standard (hides eta = 1)"));
   EXPECT_THAT(labels(high), testing::UnorderedElementsAre("eta = 2", "eta = 5"));
   EXPECT_EQ(labels("Proposed and standard: damping felt").size(), 7u);
   // The standard law is the proposed one at eta = 1.
   for (std::size_t i = 0; i < 7; ++i) {
     const double one = made.curve(low, "eta = 1").points[i].y;
-    EXPECT_NEAR(made.curve(low, "standard, on eta = 1").points[i].y, one, 0.05 * std::abs(one));
+    EXPECT_NEAR(made.curve(low, "standard (hides eta = 1)").points[i].y, one, 0.05 * std::abs(one));
   }
 }
 
 // All lines shake with the same speed, 0.5 mm/s, at whole multiples of 0.2 Hz.
 TEST(FiguresOf, ObserverShowItsResponseAtThreeGains) {
   const Made made("observer");
-  const std::string title = "Estimated over true human torque, heaviest mode (lines: theory)";
+  const std::string title = "Estimated divided by true human torque, heaviest mode (lines: theory)";
   std::size_t at = 0;
   for (const double alpha : {0.0035, 0.035, 0.35}) {
     const Kept kept = made.kept(fmt::format("alpha-{:.3g}", alpha));
@@ -256,7 +258,8 @@ TEST(FiguresOf, TransparencyShowMeasurementOnTheory) {
   }
   expect_on(made.curve(touch, "the wall alone"),
             [](double f) { return 600 * 0.19 * 0.19 / (kTwoPi * f); });
-  const std::string scaling = "Impedance in free motion over that at eta = 1 (lines: theory)";
+  const std::string scaling =
+      "Impedance in free motion, divided by the impedance at eta = 1 (lines: theory)";
   expect_on(made.curve(scaling, "eta"), [](double eta) { return eta; });
   for (const Series& s : made.panel(scaling).series) {
     if (s.style != Series::Style::points) continue;
@@ -271,7 +274,7 @@ TEST(FiguresOf, TransparencyShowMeasurementOnTheory) {
   const double series = Parameters{}.k_vc / (0.19 * 0.19);
   const auto in_series = [&](double K) { return 1 / (1 / K + 1 / series); };
   expect_on(made.curve(pressing, "as set"), [](double K) { return K; });
-  expect_on(made.curve(pressing, "in series with k_vc"), in_series);
+  expect_on(made.curve(pressing, "wall in series with k_vc"), in_series);
   expect_on(made.curve(pressing, "standard"), in_series, 0.02);
   expect_on(
       made.curve(pressing, "proposed"), [](double K) { return K; }, 0.03);
@@ -283,7 +286,7 @@ TEST(FiguresOf, MassShowTheSpringsTheory) {
   const Made made("mass");
   const double masses[] = {0.005, 0.05, 0.5};
   for (const double mass : masses) {
-    const std::string title = fmt::format("Mass felt of {} g", 1e3 * mass);
+    const std::string title = fmt::format("Mass felt for a cube of {} g", 1e3 * mass);
     const auto theory = [&](double K) {
       return [=](double f) { return 1 / (1 - mass * std::pow(kTwoPi * f, 2) / K); };
     };
@@ -311,7 +314,7 @@ TEST(FiguresOf, MassShowTheSpringsTheory) {
       EXPECT_NEAR(shaken_by(kept, f, Vec3(1, 0.8, 0.6).normalized(), 2), 2.5e-4 / f, 3e-6 / f);
     }
   }
-  const std::string least = "The least mass that can be held";
+  const std::string least = "The smallest mass that can be held";
   expect_on(made.curve(least, "K T^2/4 + B T/2"),
             [](double K) { return 1e3 * (K * 1e-6 / 4 + 2 * 1e-3 / 2); });
   expect_on(made.curve(least, "K T^2/4"), [](double K) { return 1e3 * K * 1e-6 / 4; });
@@ -373,9 +376,10 @@ TEST(FiguresOf, ClickFollowTheButtonsOwnForce) {
     }
     ASSERT_EQ(i, curve.points.size());
     const std::string which = fmt::format("predictive, {} N/m: ", stiffness);
-    EXPECT_NEAR(made.check(which + "rms difference between felt and given force [N]").value,
-                std::sqrt(off / static_cast<double>(i)), 1e-6);
-    EXPECT_NEAR(made.check(which + "deepest travel [m]").value,
+    EXPECT_NEAR(
+        made.check(which + "rms difference between the force felt and the force given [N]").value,
+        std::sqrt(off / static_cast<double>(i)), 1e-6);
+    EXPECT_NEAR(made.check(which + "largest displacement of the button [m]").value,
                 1e-3 * std::ranges::max(curve.points, {}, &FigurePoint::x).x, 1e-9);
   }
   for (const char* law : {"proposed", "standard"}) {
@@ -396,7 +400,7 @@ TEST(FiguresOf, ClickFollowTheButtonsOwnForce) {
 // A block of 50 g falls freely by 10 cm, and brings m g h = 49 mJ.
 TEST(FiguresOf, DropFallFreelyUntilTheTip) {
   const Made made("drop");
-  EXPECT_THAT(made.figure().caption, HasSubstr("The block brings 49 mJ"));
+  EXPECT_THAT(made.figure().caption, HasSubstr("The falling block has an energy of 49 mJ"));
   const std::string height = "Height of the block's lower face above the resting tip",
                     reserve = "Reserve of the energy account, predictive";
   for (const double stiffness : {600.0, 2000.0, 5000.0}) {
@@ -498,10 +502,12 @@ TEST(FiguresOf, StackSinkUnderTheWeightAbove) {
     const double wanted = (give - sunk) / (give + static_cast<double>(masses.size()) / 80000);
     const double last = kept.one(kept.size() - 1, Column::contact_force, 2);
     EXPECT_NEAR(last, wanted, 0.02 * wanted) << label;
-    EXPECT_NEAR(made.check(std::string(label) + ": relative deviation of the final force from that "
-                                                "of all springs in series")
-                    .value,
-                std::abs(last / wanted - 1), 1e-9);
+    EXPECT_NEAR(
+        made.check(
+                std::string(label) +
+                ": relative deviation of the final force from the force of all springs in series")
+            .value,
+        std::abs(last / wanted - 1), 1e-9);
     expect_over_time(
         made.curve("Solver iterations until a tick's contact forces were found", label), kept,
         [&](auto k) { return kept.one(k, Column::objects_sweeps); });
@@ -535,23 +541,23 @@ TEST(FiguresOf, LinkShowWallsOverTheDelay) {
       EXPECT_LE(curve.points[i].y, 20000 + 1e-9) << curve.label;
     }
   };
-  for (const char* law : {"standard, gains by (3)", "standard", "proposed", "tank"}) {
+  for (const char* law : {"standard, gains by condition (3)", "standard", "proposed", "tank"}) {
     expect_delays(made.curve(walls, law), 11);
   }
   // A law without a link has both ways in its motors, which it knows up to 20 ms.
-  expect_delays(made.curve(walls, "predictive, late motors instead"), 8);
-  expect_delays(made.curve(walls, "predictive, wall that analyze names"), 8);
+  expect_delays(made.curve(walls, "predictive, delayed motors instead"), 8);
+  expect_delays(made.curve(walls, "predictive, wall computed by `limpid analyze`"), 8);
   const Series &standard = made.curve(walls, "standard"), &tank = made.curve(walls, "tank"),
                &proposed = made.curve(walls, "proposed"),
-               &fitted = made.curve(walls, "standard, gains by (3)"),
+               &fitted = made.curve(walls, "standard, gains by condition (3)"),
                &lag = made.curve(walls, "proposed, theory");
   // The standard law ends where its poles say, within a quarter. Lines under others are broad.
   const double foretold = longest_delay(made.curve(walls, "standard, theory"));
   EXPECT_GT(foretold, 0);
-  EXPECT_NEAR(
-      made.check("standard: longest delay at which a tap comes to rest, divided by that of theory")
-          .value,
-      longest_delay(standard) / foretold, 1e-12);
+  EXPECT_NEAR(made.check("standard: longest delay at which a tap comes to rest, divided by the "
+                         "longest delay of theory")
+                  .value,
+              longest_delay(standard) / foretold, 1e-12);
   EXPECT_NEAR(longest_delay(standard) / foretold, 1, 0.25);
   EXPECT_GT(fitted.width, standard.width);
   EXPECT_GT(standard.width, tank.width);
@@ -571,15 +577,17 @@ TEST(FiguresOf, LinkShowWallsOverTheDelay) {
     least = std::min(least, proposed.points[i].y / lag.points[i].y);
   }
   EXPECT_NEAR(
-      made.check("proposed, delays up to 2 ms: stiffest wall, divided by that of theory").value,
+      made.check(
+              "proposed, delays up to 2 ms: stiffest wall, divided by the stiffest wall of theory")
+          .value,
       least, 1e-9);
-  const std::string energy = "Highest E_c on walls of 600 and 5000 N/m";
+  const std::string energy = "Highest energy E_c on walls of 600 and 5000 N/m";
   double most = 0;
   for (const FigurePoint& p : made.curve(energy, "tank").points) most = std::max(most, p.y);
   EXPECT_NEAR(std::max(1e-3, 1e3 * made.check("tank, delays up to 100 ms: highest E_c [J]").value),
               most, 1e-9);
-  expect_on(made.curve(energy, "what the tanks hold at the start"), [](double) { return 5.0; });
-  expect_from_to(made.curve(energy, "what the tanks hold at the start"), 0.45, 112, 1e-9);
+  expect_on(made.curve(energy, "energy in the tanks at the start"), [](double) { return 5.0; });
+  expect_from_to(made.curve(energy, "energy in the tanks at the start"), 0.45, 112, 1e-9);
   // A wall that holds a tap is felt at most as stiff as it is.
   const std::string felt = "Stiffness felt at the device, at the stiffest wall";
   for (const FigurePoint& p : made.curve(felt, "standard").points) EXPECT_LE(p.y, 20000 * 1.25);

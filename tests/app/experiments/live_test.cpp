@@ -194,7 +194,7 @@ TEST_F(LiveExperiments, InertiaAsksForThreeEtasAndDividesByTheFirst) {
       analyze(bench.arm, rest_pose(bench.arm), bench.parameters, std::nullopt).eta_min;
   const double etas[] = {1, std::max(0.6, 1.1 * least), 1.75};
   const Felt one = felt_of(made_[0], bench.arm);
-  const std::string shares = "Inertia and damping felt, divided by those at eta = 1";
+  const std::string shares = "Inertia and damping felt, divided by their values at eta = 1";
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(asked_[i].parameters.kind, CouplingKind::proposed);
     EXPECT_NEAR(asked_[i].parameters.eta, etas[i], 1e-12);

@@ -112,7 +112,7 @@ TEST(FiguresOf, CoordinationShowItsFourRuns) {
   for (const auto& [kept, label] :
        {std::pair(&half, "half the inertia"), {&twice, "twice the inertia"}}) {
     expect_over_time(
-        made.curve("Proposed: what a wrong inertia in the model adds to the error", label), *kept,
+        made.curve("Proposed coupling: error added by a wrong inertia in the model", label), *kept,
         [&](auto k) { return 1e6 * (kept->error(k) - proposed.error(k)); });
   }
 }
@@ -140,13 +140,13 @@ TEST(FiguresOf, CoordinationPutALineThroughTheContacts) {
   const Kept right = made.kept("proposed");
   for (const char* error : {"0.5", "2"}) {
     const Kept wrong = made.kept(std::string("inertia-error-") + error);
-    EXPECT_NEAR(made.check(fmt::format("largest error with the model's inertia times {}, divided "
-                                       "by that with the right inertia",
+    EXPECT_NEAR(made.check(fmt::format("largest error if the model has {} times the inertia, "
+                                       "divided by the largest error with the right inertia",
                                        error))
                     .value,
                 largest_error(wrong) / largest_error(right), 1e-9);
-    EXPECT_NEAR(made.check(fmt::format("slope of the error with {} times the inertia in the "
-                                       "model, divided by that of the standard coupling",
+    EXPECT_NEAR(made.check(fmt::format("slope of the error if the model has {} times the inertia, "
+                                       "divided by the slope of the standard coupling",
                                        error))
                     .value,
                 slope_of(wrong) / standard, 1e-9);
@@ -184,7 +184,7 @@ TEST(FiguresOf, InertiaShowThreeEtasInOneHand) {
     expect_over_time(estimate, kept,
                      [&](auto k) { return kept.norm(k, Column::hand_torque_estimate); });
     EXPECT_EQ(estimate.style, Series::Style::dashed);
-    expect_over_time(made.curve("Shoulder angle: the motion is the same", label), kept,
+    expect_over_time(made.curve("Shoulder angle: the same motion at all three etas", label), kept,
                      [&](auto k) { return kept.one(k, Column::device_position, 1); });
     if (eta == 1) continue;
     EXPECT_NEAR(made.check(fmt::format("rms human torque at eta = {}: relative deviation from eta "
@@ -198,13 +198,11 @@ TEST(FiguresOf, InertiaShowThreeEtasInOneHand) {
       difference = std::max(difference, (x - kept.vec(k, Column::device_position)).norm());
       range = std::max(range, (x - one.vec(0, Column::device_position)).norm());
     }
-    EXPECT_NEAR(
-        made.check(fmt::format(
-                       "difference of the motion at eta = {} from that at eta = 1, divided by the "
-                       "range",
-                       eta))
-            .value,
-        difference / range, 1e-9);
+    EXPECT_NEAR(made.check(fmt::format("difference between the motions at eta = {} and at eta = 1, "
+                                       "divided by the range of motion",
+                                       eta))
+                    .value,
+                difference / range, 1e-9);
   }
 }
 
@@ -238,17 +236,17 @@ TEST(FiguresOf, SaturationShowFourPresses) {
     expect_over_time(made.curve(title, label), kept, [&](auto k) { return kept.one(k, c, 1); });
   };
   for (const char* title :
-       {"Human torque at the shoulder", "Human torque at the shoulder while pulling out"}) {
-    shoulder(title, "estimate, wound up", without, Column::hand_torque_estimate);
-    shoulder(title, "true, wound up", without, Column::hand_torque);
+       {"Human torque at the shoulder", "Human torque at the shoulder while the hand pulls out"}) {
+    shoulder(title, "estimate, no anti-windup", without, Column::hand_torque_estimate);
+    shoulder(title, "true, no anti-windup", without, Column::hand_torque);
     shoulder(title, "estimate, anti-windup", with, Column::hand_torque_estimate);
     shoulder(title, "true, anti-windup", with, Column::hand_torque);
     shoulder(title, "true, predictive", predicted, Column::hand_torque);
   }
-  const char* motors = "Torque of the shoulder's motor, asked and given";
-  shoulder(motors, "asked, wound up", without, Column::commanded_torque);
-  shoulder(motors, "asked, anti-windup", with, Column::commanded_torque);
-  shoulder(motors, "given, wound up", without, Column::motor_torque);
+  const char* motors = "Torque of the shoulder's motor, commanded and given";
+  shoulder(motors, "commanded, no anti-windup", without, Column::commanded_torque);
+  shoulder(motors, "commanded, anti-windup", with, Column::commanded_torque);
+  shoulder(motors, "given, no anti-windup", without, Column::motor_torque);
   shoulder(motors, "given, anti-windup", with, Column::motor_torque);
   shoulder(motors, "given, predictive", predicted, Column::motor_torque);
   for (const auto& [kept, law] :
@@ -260,7 +258,7 @@ TEST(FiguresOf, SaturationShowFourPresses) {
                        *kept, [&, c = c](auto k) { return 1e3 * (-0.04 - kept->tip(k, c).z()); });
     }
   }
-  const auto& out = made.panel("Human torque at the shoulder while pulling out");
+  const auto& out = made.panel("Human torque at the shoulder while the hand pulls out");
   EXPECT_EQ(out.x_range, std::pair(1.2, 1.45));
 }
 
@@ -307,8 +305,8 @@ TEST(FiguresOf, SaturationJudgeWhatWasRecorded) {
 // m.
 TEST(FiguresOf, SaturationHaveAPointForEachCorner) {
   const Made made("saturation");
-  const std::string torque = "Pressed into random corners of walls: contact torque";
-  const std::string steps = "Pressed into random corners of walls: the proxy's steps";
+  const std::string torque = "Tip pressed into random corners of walls: contact torque";
+  const std::string steps = "Tip pressed into random corners of walls: the proxy's steps";
   const std::pair<const char*, std::size_t> sets[] = {{"built-in arm", 120},
                                                       {"other arms, more walls, any eta", 48}};
   const double bounds[] = {1.3, 1.6};
@@ -328,7 +326,7 @@ TEST(FiguresOf, SaturationHaveAPointForEachCorner) {
     const std::string where = fmt::format("{} corners, {}: ", count, label);
     EXPECT_EQ(made.check(where + "largest contact torque, divided by the motors' limit").value,
               most_torque);
-    EXPECT_NEAR(1e3 * made.check(where + "longest way of the proxy in a tick [rad]").value,
+    EXPECT_NEAR(1e3 * made.check(where + "longest step of the proxy in a tick [rad]").value,
                 most_jump, 1e-9);
     expect_on(made.curve(torque, fmt::format("bound, {}", label)),
               [&](double) { return bounds[i]; });
@@ -344,7 +342,8 @@ TEST(FiguresOf, FrictionShowItsDrags) {
       {"drag-0.5-0.3", "0.5 sticking, 0.3 slipping", 0.5, 0.3},
       {"drag-0.2-0.2", "0.2 for both", 0.2, 0.2},
       {"drag-0-0", "smooth", 0, 0}};
-  const std::string title = "Tangential force divided by normal force, over the drag";
+  const std::string title =
+      "Tangential force divided by normal force, while the hand moves sideways";
   for (const auto& [name, label, sticking, slipping] : drags) {
     const Kept kept = made.kept(name);
     EXPECT_EQ(kept.p.kind, CouplingKind::predictive);
@@ -391,7 +390,8 @@ TEST(FiguresOf, FrictionShowItsDrags) {
                    [&](auto k) { return 1e3 * rough.tip(k, Column::device_position).y(); });
   expect_over_time(made.curve(slip, "proxy"), rough,
                    [&](auto k) { return 1e3 * rough.tip(k, Column::proxy_position).y(); });
-  const std::string taken = "Energy that friction gave: its work and the energy in its spring";
+  const std::string taken =
+      "Energy that friction gave: work of the friction force, plus energy in the friction's spring";
   const auto& smooth = made.curve(taken, "smooth");
   expect_on(
       smooth, [](double) { return 0.0; }, 1e-6);
@@ -482,13 +482,13 @@ TEST(FiguresOf, SwitchingShowStopsAndTurns) {
     EXPECT_NEAR(kept.time(kept.size()), 2.5, 2e-3);
   }
   const Kept ours = made.kept("stop-20-predictive");
-  const std::string stop = "A joint goes into its stop of 20 N m/rad, and out again";
+  const std::string stop = "A joint moves into its stop of 20 N m/rad and out again";
   expect_over_time(made.curve(stop, "device x1"), ours,
                    [&](auto k) { return 1e3 * ours.one(k, Column::device_position, 0); });
   expect_over_time(made.curve(stop, "proxy x2"), ours,
                    [&](auto k) { return 1e3 * ours.one(k, Column::proxy_position, 0); });
   const std::string gave =
-      "Energy that the joint's stop gave minus the energy that was stored in the stop";
+      "Energy that the joint's end stop gave minus the energy that was stored in the end stop";
   const Kept paper = made.kept("stop-20-proposed");
   expect_over_time(made.curve(gave, "proposed, 20 N m/rad"), paper,
                    [&](auto k) { return 1e6 * paper.one(k, Column::contact_gain); });
@@ -600,11 +600,11 @@ TEST(FiguresOf, PassivityShowMeansAndBandsOfTenTrials) {
       }
       const std::string what = column == Column::energy_total
                                    ? "highest total E_c of all trials, "
-                                   : "highest E_c, commanded, of all trials, ";
+                                   : "highest commanded E_c of all trials, ";
       EXPECT_EQ(made.check(what + label + " [J]").value, highest);
     }
   }
-  EXPECT_NEAR(made.check("mean final E_c, total: standard minus eta = 0.6 [J]").value,
+  EXPECT_NEAR(made.check("mean of the final total E_c: standard minus eta = 0.6 [J]").value,
               1e-3 * (made.curve("Total", "standard").points.back().y -
                       made.curve("Total", "eta = 0.6").points.back().y),
               1e-12);

@@ -648,7 +648,7 @@ TEST(DeviceLoop, SaysAStartOutsideOfTheRangeAndRefusesOneFarOutside) {
     FAIL();
   } catch (const LoopError& error) {
     EXPECT_STREQ(error.what(),
-                 "position: joint 1 has -0.25; needed: -0.2 to 0.2 m, as the arm has it");
+                 "position: joint 1 has -0.25; needed: -0.2 to 0.2 m, the arm's range");
   }
 }
 
@@ -747,8 +747,8 @@ TEST(Loops, SayWhatIsNotAllowed) {
       << "real motors are nobody's default arm";
 
   DeviceLoop loop(slide(), std::array{0.0});
-  EXPECT_THAT(refusal([&] { loop.set("loop.tick", 0.002); }), HasSubstr("fixed"));
-  EXPECT_THAT(refusal([&] { loop.set("loop.tick=0.002"); }), HasSubstr("fixed"));
+  EXPECT_THAT(refusal([&] { loop.set("loop.tick", 0.002); }), HasSubstr("cannot change"));
+  EXPECT_THAT(refusal([&] { loop.set("loop.tick=0.002"); }), HasSubstr("cannot change"));
   EXPECT_THAT(refusal([&] { loop.set("coupling.eta", 1e9); }), HasSubstr("allowed"));
   EXPECT_THAT(refusal([&] { (void)loop.row("/device/positon"); }),
               HasSubstr("no such column; did you mean /device/position?"));

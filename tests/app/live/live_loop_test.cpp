@@ -645,7 +645,7 @@ TEST(WarmthMemory, AddsWhatAMotionBesideTheLoopsWarmedUp) {
   EXPECT_NEAR(memory.take(arm, 60)[1], 0.4 * std::exp(-1) + 0.4 * std::exp(-0.5), 1e-12);
 }
 
-// A SpaceMouse that leads the hand of the virtual arm.
+// A SpaceMouse that moves the hand of the virtual arm.
 class Cap final : public Device {
  public:
   explicit Cap(std::shared_ptr<std::atomic<double>> push) : push_(std::move(push)) {

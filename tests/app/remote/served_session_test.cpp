@@ -244,7 +244,7 @@ TEST_F(Served, LeavesTheForceOfARealDeviceToItsSecondButton) {
   EXPECT_TRUE(until(armed));
   ask({{"do", "cut"}});
   EXPECT_TRUE(until([&] { return !armed(); }));
-  EXPECT_THAT(refused({{"do", "open"}, {"arm", "omni.urdf"}}), HasSubstr("leads a real device"));
+  EXPECT_THAT(refused({{"do", "open"}, {"arm", "omni.urdf"}}), HasSubstr("moves a real device"));
   EXPECT_THAT(refused({{"do", "twin"}}), HasSubstr("one hand cannot hold two real devices"));
 }
 

@@ -250,7 +250,7 @@ TEST(BodyReport, WarnsOfAllThat) {
   ASSERT_EQ(report.warnings.size(), 4u);
   EXPECT_THAT(report.warnings[0], HasSubstr("[1, 1, 3]"));
   EXPECT_THAT(report.warnings[1], HasSubstr("'far'"));
-  EXPECT_THAT(report.warnings[2], HasSubstr("0.2 J: a falling kilogram hurts"));
+  EXPECT_THAT(report.warnings[2], HasSubstr("0.2 J: falling objects may hurt the hand"));
   EXPECT_THAT(report.warnings[3], HasSubstr("'heavy' and 'inside'"));
   EXPECT_TRUE(report_on_bodies(on_a_floor({}), arm()).facts.empty());
 }

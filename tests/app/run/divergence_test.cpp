@@ -50,7 +50,7 @@ TEST(Divergence, BeginsWithTheFirstWildRowOfThoseThatLeadToIt) {
   EXPECT_TRUE(watch.lost());
   EXPECT_EQ(watch.since(), 0.3);
   EXPECT_EQ(watch.since_row(), 12u);
-  EXPECT_EQ(watch.why(), "the speed of the proxy's joint 2 grew beyond 1000 rad/s");
+  EXPECT_EQ(watch.why(), "the speed of the proxy's joint 2 became larger than 1000 rad/s");
 }
 
 TEST(Divergence, ThatSwingsThroughSmallValuesBeganBefore) {
@@ -58,7 +58,8 @@ TEST(Divergence, ThatSwingsThroughSmallValuesBeganBefore) {
     const auto watch = swinging(calm);
     EXPECT_TRUE(watch.lost()) << calm;
     EXPECT_EQ(watch.since(), 0.1) << calm;
-    EXPECT_EQ(watch.why(), "the speed of the device's joint 3 grew beyond 1000 rad/s") << calm;
+    EXPECT_EQ(watch.why(), "the speed of the device's joint 3 became larger than 1000 rad/s")
+        << calm;
   }
 }
 
@@ -76,12 +77,13 @@ TEST(Divergence, SaysWhatGrewAndInWhichJoint) {
     return after({row(0, column, joint, value)}).why();
   };
   EXPECT_EQ(why(Column::device_velocity, 0, 1001),
-            "the speed of the device's joint 1 grew beyond 1000 rad/s");
+            "the speed of the device's joint 1 became larger than 1000 rad/s");
   EXPECT_EQ(why(Column::commanded_torque, 2, -10001),
-            "the torque asked of joint 3 grew beyond 10000 N m");
+            "the torque commanded to joint 3 became larger than 10000 N m");
   EXPECT_EQ(why(Column::proxy_position, 1, 10.1),
-            "the distance of device and proxy in joint 2 grew beyond 10 rad");
-  EXPECT_EQ(why(Column::commanded_torque, 2, kNan), "the torque asked of joint 3 is not finite");
+            "the distance between device and proxy in joint 2 became larger than 10 rad");
+  EXPECT_EQ(why(Column::commanded_torque, 2, kNan),
+            "the torque commanded to joint 3 is not finite");
   EXPECT_EQ(why(Column::device_velocity, 1, -kInfinite),
             "the speed of the device's joint 2 is not finite");
   for (const auto& [column, most] : {std::pair(Column::device_velocity, 999.0),

@@ -79,7 +79,8 @@ TEST(HeldBack, IsTorqueOfMotorsThatAreMoreThanHalfAsWarmAsTheyMayBe) {
   const std::string text = warmed(true, 0.9);
   EXPECT_THAT(text,
               HasSubstr("warmth of the motors     at most 75 % of the limit for hours of use ("));
-  EXPECT_THAT(text, HasSubstr(test::omni().joints[1].name + "); less than the full torque for"));
+  EXPECT_THAT(text,
+              HasSubstr(test::omni().joints[1].name + "); the full torque was not available for"));
   EXPECT_THAT(text, HasSubstr("for 0.050 s")) << "ticks 51 to 75";
   EXPECT_THAT(warmed(false, 0.9), Not(HasSubstr("warmth"))) << "the file limits no motor";
 }

@@ -45,10 +45,10 @@ TEST(SceneFlaws, AreWhatTheTipNeverReaches) {
   const double reach = farthest_tip(test::omni()).distance;
   const double root = test::omni().joints[0].origin.translation().z();
   EXPECT_THAT(flaws(floor_at(root - reach - 1)),
-              ElementsAre(HasSubstr("1 m beyond the tip's reach")));
+              ElementsAre(HasSubstr("1 m outside the tip's reach")));
   EXPECT_THAT(flaws(floor_at(root - reach + 0.01)), IsEmpty());
   const Object far{.pose = pose_at(Vec3(5, 0, 0)), .shape = Sphere{0.1}};
-  EXPECT_THAT(flaws(far), ElementsAre(HasSubstr("beyond the tip's reach")));
+  EXPECT_THAT(flaws(far), ElementsAre(HasSubstr("outside the tip's reach")));
 }
 
 TEST(SceneFlaws, AreKineticFrictionAboveStaticFriction) {

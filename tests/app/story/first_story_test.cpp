@@ -66,7 +66,7 @@ TEST_F(TheFirstStory, ShowsAProxyDraggedIntoTheTableByLimitedMotors) {
 }
 
 TEST_F(TheFirstStory, ShowsEnergyThatClimbsInAStiffGripAndThePredictiveLawThatKeepsItDown) {
-  const auto [proposed, predictive] = step("energy climbs");
+  const auto [proposed, predictive] = step("energy rises");
   EXPECT_GT(proposed.energy_given, 1);
   EXPECT_LT(predictive.energy_given, kPassive);
   const auto [now, all_the_while] = step("stays passive");

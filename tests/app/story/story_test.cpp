@@ -101,7 +101,8 @@ TEST(StoryScripts, RefuseKeysAndWordsThatDoNotExistAndSayWhere) {
   expect_refused(with("caption = \"Two.\"", "captoin = \"Two.\""), "s.toml:10: step.captoin");
   expect_refused(with("title", "titel"), "s.toml:1: titel: no such key");
   expect_refused("scene = \"nope.toml\"\n" + kWhole, "s.toml:1: scene: ");
-  expect_refused("device = \"nope.urdf\"\n" + kWhole, "a file beside the script, or one of ");
+  expect_refused("device = \"nope.urdf\"\n" + kWhole,
+                 "a file in the folder of the script, or one of ");
   expect_refused(with("hand = [[1, 0.19, 0, -0.01]]", "hand = \"nope.csv\""), "step.hand: ");
   expect_refused(with("kind = standard", "kind = magic"), "standard, proposed, predictive");
   expect_refused(with("coupling.eta", "coupling.etta"), "s.toml:12: step.twin: coupling.etta");
@@ -134,10 +135,10 @@ TEST(StoryScripts, RefuseSettingsThatCannotHoldForOneRunOrFromThere) {
   expect_refused(with("twin = [\"coupling.eta = 0.4\"]", "twin = [\"hand.stiffness = 9\"]"),
                  "write this setting under set");
   expect_refused(with("set = [\"hand.stiffness = 700\"]", "set = [\"loop.tick = 0.002\"]"),
-                 "in the first step only");
+                 "only in the first step");
   for (const char* spaced : {"  loop.tick = 0.002", "\\tloop.tick=0.002"}) {
     expect_refused(with("set = [\"hand.stiffness = 700\"]", fmt::format("set = [\"{}\"]", spaced)),
-                   "in the first step only");
+                   "only in the first step");
   }
 }
 

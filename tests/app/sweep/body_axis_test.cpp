@@ -132,7 +132,7 @@ TEST_F(BodyAxes, SayWhatIsWrongAndWhatIsAllowed) {
                     HasSubstr("joint.damping, joint.friction"), Not(HasSubstr("joint.spring, "))));
   EXPECT_THAT(refusal("hand = { tap = 2 }\nmeasure = [\"energy\"]\naxis = [ { key = "
                       "\"scene.body.die.mass\", values = [1] } ]"),
-              HasSubstr("a tap has its own wall"));
+              HasSubstr("a tap test has its own wall"));
   EXPECT_THAT(refusal("measure = [\"energy\"]\naxis = [ { key = \"scene.body.die.mass\", values = "
                       "[1] } ]"),
               AllOf(HasSubstr("table.toml"), HasSubstr("nothing moves in this scene")));

@@ -42,7 +42,7 @@ TEST(Conditions, OfManyRunsNameEachValueOrTheirEnds) {
   EXPECT_THAT(text, HasSubstr("limit of every motor: 100 N m"));
   EXPECT_THAT(text, HasSubstr("grip 100 to 500 N/m, undamped"));
   EXPECT_THAT(text, HasSubstr("no mass in the hand and 0.2 kg in the hand"));
-  EXPECT_THAT(text, HasSubstr("exact encoders and 0.0001 rad a step of the encoders"));
+  EXPECT_THAT(text, HasSubstr("exact encoders and 0.0001 rad per encoder step"));
   EXPECT_THAT(text, HasSubstr("no delay and 4 ms of delay"));
   EXPECT_THAT(text, HasSubstr("tick 1 and 2 ms"));
 }

@@ -69,7 +69,7 @@ TEST_F(Tables, OpenWithTheirPlanAndAllThatIsDone) {
 
 TEST_F(Tables, SayWhatTheyLack) {
   const fs::path file = written(test::sweep_plan(dir_, kMaps));
-  EXPECT_THAT(refusal(dir_ / "plan.toml"), HasSubstr("no table of a sweep"));
+  EXPECT_THAT(refusal(dir_ / "plan.toml"), HasSubstr("not the table of a sweep"));
   const hid_t h5 = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   H5Adelete(h5, "key");
   H5Fclose(h5);
@@ -116,7 +116,7 @@ TEST_F(Tables, AreLookedAtWithoutTheFilesOfTheirPlanButNotRun) {
   EXPECT_THAT(open_table(file)->why_no_run, HasSubstr("have changed since"));
   fs::remove(dir_ / "mine.toml");
   const auto opened = open_table(file);
-  EXPECT_THAT(opened->why_no_run, HasSubstr("not there: "));
+  EXPECT_THAT(opened->why_no_run, HasSubstr("not found: "));
   EXPECT_EQ(make_map(*opened, first_choice(*opened->plan, opened->table)).spots.size(), 6u);
 }
 

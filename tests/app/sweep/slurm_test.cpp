@@ -149,7 +149,7 @@ TEST_F(ASlurmArray, GivesUpATaskThatBringsNothing) {
     }
     return "nothing";
   };
-  EXPECT_THAT(refusal(), HasSubstr("task 1 of " + array.name() + " brought nothing 3 times"));
+  EXPECT_THAT(refusal(), HasSubstr("task 1 of " + array.name() + " gave no result 3 times"));
   const SweepBlock first = block_of(plan_, 0);
   const auto one = *measure_point(plan_, 0, std::atomic<bool>{false});
   std::vector<double> rows;

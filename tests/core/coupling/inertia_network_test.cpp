@@ -16,7 +16,8 @@ using Matrix = Mat<kAnyDof>;
 using Vector = Vec<kAnyDof>;
 using Complex = std::complex<double>;
 
-constexpr double kBand = 5.3;  // [Hz]
+constexpr double kBand = 5.3;    // [Hz]
+constexpr double kLight = 1e-4;  // M2 / M1 of a proxy that bounds no eta of these tests [-]
 constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
 
 // The damping that the ladder needs, by its proof [N m s/rad].
@@ -230,7 +231,7 @@ TEST(AddedMass, DampsNoMoreThanADelayBears) {
   for (const double T : {0.0005, 0.001, 0.002, 0.004}) {
     for (const double eta : {1.2, 2.0, 5.0, 20.0, 100.0}) {
       for (int most = 0; most <= 20; ++most) {
-        const AddedMass added = added_mass(eta, most, T);
+        const AddedMass added = added_mass(eta, most, T, kLight);
         const double beta = 2 * 0.7 * (added.eta - 1) * added.edge;
         const double w_1 = std::numbers::pi / (2 * T * (most + 0.7));
         EXPECT_LE(beta, w_1) << "eta " << eta << ", " << most << " ticks of " << T;
@@ -245,15 +246,28 @@ TEST(AddedMass, DampsNoMoreThanADelayBears) {
 
 TEST(AddedMass, IsAsItIsSetWhereNothingIsLate) {
   for (const double eta : {0.1, 1.0, 2.0, 5.0}) {
-    const AddedMass added = added_mass(eta, 0, 0.001);
+    const AddedMass added = added_mass(eta, 0, 0.001, kLight);
     EXPECT_EQ(added.eta, eta);
     EXPECT_EQ(added.edge, InertiaShape::kFastest);
   }
   // Delays of 1, 2 and 3 ms allow 5 to 10, 5 and 3.3 Hz.
   for (const auto& [most, hertz] : {std::pair(1, 10.0), {2, 5.0}, {3, 3.3}}) {
-    EXPECT_NEAR(added_mass(5, most, 0.001).edge / 2 / std::numbers::pi, hertz, 0.1);
+    EXPECT_NEAR(added_mass(5, most, 0.001, kLight).edge / 2 / std::numbers::pi, hertz, 0.1);
   }
-  EXPECT_LT(added_mass(5, 5, 0.001).eta, 5);
+  EXPECT_LT(added_mass(5, 5, 0.001, kLight).eta, 5);
+}
+
+// Beside the proxy no more than the device's own inertia is added: (eta - 1) M2 <= M1.
+TEST(AddedMass, IsNoHeavierBesideAHeavyProxyThanTheDevice) {
+  for (const double ratio : {0.1, 0.25, 0.5, 1.0, 20.0}) {
+    for (const double eta : {1.01, 2.0, 5.0, 100.0}) {
+      const AddedMass added = added_mass(eta, 0, 0.001, ratio);
+      EXPECT_LE((added.eta - 1) * ratio, 1 + 1e-12) << "eta " << eta << ", M2/M1 " << ratio;
+      EXPECT_GT(added.eta, 1);
+      if ((eta - 1) * ratio <= 1 && eta <= 5) EXPECT_EQ(added.eta, eta);
+    }
+    EXPECT_EQ(added_mass(0.5, 0, 0.001, ratio).eta, 0.5);
+  }
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ TEST(Health, CountsOpenEdgesOddOnesAndWhatHasNoArea) {
   Triangles missing = test::icosphere(1);
   missing.indices.resize(missing.indices.size() - 3);
   EXPECT_EQ(missing.mesh()->health().open_edges, 3u);
-  EXPECT_EQ(missing.mesh()->health().text(), "3 open edges: touched as a sheet, on both sides");
+  EXPECT_EQ(missing.mesh()->health().text(),
+            "3 open edges: the mesh is touched like a thin sheet, on both sides");
 
   Triangles turned = test::icosphere(1);
   std::swap(turned.indices[0], turned.indices[1]);
@@ -53,7 +54,7 @@ TEST(Health, CountsOpenEdgesOddOnesAndWhatHasNoArea) {
   const auto mesh = poor.mesh();
   EXPECT_EQ(mesh->health().degenerate, 2u);
   EXPECT_TRUE(mesh->health().closed());
-  EXPECT_EQ(mesh->health().text(), "2 triangles of zero area ignored");
+  EXPECT_EQ(mesh->health().text(), "2 triangles with zero area ignored");
   EXPECT_EQ(mesh->triangles(), 20u);
 }
 
@@ -118,7 +119,7 @@ TEST(TriangleMesh, RefusesWhatIsNoMesh) {
   expect_refused({}, "no triangles");
   Triangles body = test::icosphere(0);
   body.indices.pop_back();
-  expect_refused(body, "whole triangles");
+  expect_refused(body, "not a multiple of 3");
   body = test::icosphere(0);
   body.indices[7] = 12;
   expect_refused(body, "index 12 of 12 vertices");
@@ -126,7 +127,7 @@ TEST(TriangleMesh, RefusesWhatIsNoMesh) {
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -2e9f}) {
     body = test::icosphere(0);
     body.vertices[3].y() = bad;
-    expect_refused(body, "not finite, or beyond 1e9");
+    expect_refused(body, "not finite or is larger than 1e9");
   }
   body = test::icosphere(0);
   for (Eigen::Vector3f& v : body.vertices) v.z() = v.x() = 0;

@@ -207,7 +207,7 @@ TEST_F(AClaim, HasNamesThatCannotLeaveItsFolder) {
   const DeviceClaim claim = take("socket:/run/user/1000/limpid/../a b.device");
   EXPECT_EQ(file().filename(),
             "limpid-socket:%2Frun%2Fuser%2F1000%2Flimpid%2F..%2Fa%20b.device.lock");
-  EXPECT_THAT(refusal(std::string(300, 'a')), HasSubstr("too long a name"));
+  EXPECT_THAT(refusal(std::string(300, 'a')), HasSubstr("is too long"));
 }
 
 TEST_F(AClaim, IsRefusedWhereNobodyCanTell) {

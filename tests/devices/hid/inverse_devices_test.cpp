@@ -63,7 +63,7 @@ TEST(InverseDevices, ThatAreWantedAndNotThereAreListedWithWhatTheyLack) {
   service.wait_for("messages 0");
   found = list_inverse_devices(InverseName{"", service.address()}, nobody);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].missing, "the service has no Inverse3");
+  EXPECT_EQ(found[0].missing, "the service reports no Inverse3");
   EXPECT_TRUE(list_inverse_devices({}, nobody).empty());
   found = list_inverse_devices(InverseName{"", nobody}, nobody);
   ASSERT_EQ(found.size(), 1u);

@@ -273,14 +273,14 @@ TEST(PidJoystick, SaysWhenTheDeviceCannotMakeAnEffect) {
 TEST(PidJoystick, SaysWhenTheDeviceDoesNotAnswer) {
   PidDevice device;
   device.load_status = 0;
-  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("does not say where"));
+  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("does not report the index"));
 }
 
 // Blocks count from 1; 0 stands for no effect.
 TEST(PidJoystick, TakesNoBlockZero) {
   PidDevice device;
   device.first_block = 0;
-  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("does not say where"));
+  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("does not report the index"));
   EXPECT_THAT(device.received, testing::Not(testing::Contains(kEnable)));
 }
 

@@ -76,6 +76,25 @@ TEST(PredictiveTaps, WithAHeavyProxyInAHeavyHandGiveNoEnergy) {
   }
 }
 
+// Mass that the law adds to a device beside a heavy proxy makes the two swing against each other,
+// if it is not bounded by the device's own.
+TEST(PredictiveTaps, WithAHeavyProxyAndAddedMassGiveNoEnergy) {
+  for (const double ratio : {0.3, 0.5, 1.0, 3.0}) {
+    for (const double eta : {2.0, 3.0, 5.0}) {
+      for (const double mass : {0.0, 0.1}) {
+        Parameters p = predictive(eta);
+        p.inertia_ratio = ratio;
+        p.hand_mass_at_tip = mass;
+        const Felt felt = tapped({.wall = 600}, p);
+        SCOPED_TRACE(testing::Message()
+                     << "M2/M1 " << ratio << ", eta " << eta << ", hand " << mass << " kg");
+        EXPECT_LE(felt.energy, 0.05e-3);
+        EXPECT_LE(felt.port, 0.05e-3);
+      }
+    }
+  }
+}
+
 TEST(PredictiveTaps, ThroughAnEncoderGiveTheHandNoEnergy) {
   for (const double wall : {600.0, 2000.0, 5000.0}) {
     for (const double eta : {1.0, 0.3}) {

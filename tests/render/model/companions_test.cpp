@@ -35,14 +35,14 @@ TEST_F(CompanionFiles, MayBeSoLargeTogetherWithTheModel) {
   Companions companions(name_, dir_ / "", kLargestModelFiles - 1000);
   EXPECT_EQ(companions.read("a.bin")->size(), 600u);
   EXPECT_EQ(companions.read("b.bin")->size(), 400u);
-  EXPECT_THAT(refusal(companions, "c.bin"), testing::HasSubstr("larger than the 512 MiB"));
+  EXPECT_THAT(refusal(companions, "c.bin"), testing::HasSubstr("larger than the limit of 512 MiB"));
 }
 
 TEST_F(CompanionFiles, CountEachTimeTheyAreRead) {
   write("a.bin", 600);
   Companions companions(name_, dir_ / "", kLargestModelFiles - 1000);
   EXPECT_EQ(companions.read("a.bin")->size(), 600u);
-  EXPECT_THAT(refusal(companions, "a.bin"), testing::HasSubstr("larger than the 512 MiB"));
+  EXPECT_THAT(refusal(companions, "a.bin"), testing::HasSubstr("larger than the limit of 512 MiB"));
 }
 
 TEST_F(CompanionFiles, AreNothingWhereThereIsNone) {

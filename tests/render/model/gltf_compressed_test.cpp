@@ -416,7 +416,7 @@ TEST(GltfCompressed, LeavesABrokenWebPOut) {
       textured(R"({"extensions":{"EXT_texture_webp":{"source":0}}})", half).binary(), "a.glb");
   EXPECT_TRUE(model.images.empty());
   ASSERT_EQ(model.warnings.size(), 1u);
-  EXPECT_NE(model.warnings[0].find("no PNG, JPEG or WebP"), std::string::npos);
+  EXPECT_NE(model.warnings[0].find("not a PNG, JPEG or WebP"), std::string::npos);
 }
 
 TEST(GltfCompressed, StaysTouchableWithoutAPictureOfAnUnknownKind) {

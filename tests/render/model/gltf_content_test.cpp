@@ -45,7 +45,7 @@ TEST(GltfContent, LeavesPointsAndLinesOutAndSaysSo) {
   const Model model = parse_gltf(file.binary(), "part.glb");
   EXPECT_EQ(model.indices.size(), 3u);
   ASSERT_EQ(model.warnings.size(), 1u);
-  EXPECT_EQ(model.warnings[0], "points and lines are left out");
+  EXPECT_EQ(model.warnings[0], "points and lines are ignored");
 }
 
 TEST(GltfContent, KeepsOnlyTheVerticesThatAPrimitiveUses) {
@@ -387,14 +387,15 @@ TEST(GltfContent, SaysWhichTexturesAreLeftOut) {
   EXPECT_EQ(model.parts[0].material.normal, -1);
   EXPECT_EQ(model.parts[0].material.color, 0);
   EXPECT_EQ(model.warnings,
-            std::vector<std::string>{"a texture with coordinates of its own is left out"});
+            std::vector<std::string>{"an image texture that has its own coordinates is not shown"});
   file = textured_square();
   file.more = R"(,"textures":[{"extensions":{"ACME_texture":{}}}],"materials":[{)"
               R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
   model = parse_gltf(file.binary(), "part.glb");
   EXPECT_EQ(model.parts[0].material.color, -1);
-  EXPECT_EQ(model.warnings, std::vector<std::string>{
-                                "a texture of a kind that is not read is left out: ACME_texture"});
+  EXPECT_EQ(model.warnings,
+            std::vector<std::string>{
+                "a texture of a kind that Limpid cannot read is ignored: ACME_texture"});
 }
 
 // A node's own transform: turned, then moved, its parent's after it; or a matrix, column by column.

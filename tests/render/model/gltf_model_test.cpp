@@ -103,7 +103,7 @@ TEST(GltfModel, RefusesAnIndexOutsideOfTheMesh) {
 }
 
 TEST(GltfModel, RefusesAnAccessorOutsideOfItsBuffer) {
-  expect_refusal(glb(triangle_json(R"("mesh":0)", 4), triangle_data()), "outside of its buffer");
+  expect_refusal(glb(triangle_json(R"("mesh":0)", 4), triangle_data()), "outside its buffer");
 }
 
 TEST(GltfModel, RefusesReferencesToNothing) {

@@ -278,7 +278,7 @@ TEST_F(ModelFolder, HasNothingFromOutside) {
   write("a.mtl", "newmtl red\nmap_Kd ../../etc/passwd\n");
   const Model model = load_model_file(folder_ / "a.obj");
   ASSERT_FALSE(model.warnings.empty());
-  EXPECT_NE(model.warnings[0].find("outside of the model's folder"), std::string::npos);
+  EXPECT_NE(model.warnings[0].find("outside the model's folder"), std::string::npos);
 }
 
 TEST(ModelFile, NeedsNoOtherFileOfOneThatStandsAlone) {
@@ -288,15 +288,15 @@ TEST(ModelFile, NeedsNoOtherFileOfOneThatStandsAlone) {
 }
 
 TEST(ModelFile, SaysWhatCannotBeRead) {
-  EXPECT_NE(refusal_of({1}, "a.step").find("allowed are .glb, .gltf, .stl"), std::string::npos);
+  EXPECT_NE(refusal_of({1}, "a.step").find("allowed: .glb, .gltf, .stl"), std::string::npos);
   EXPECT_EQ(refusal_of({}, "a.stl"), "a.stl: is empty");
   EXPECT_EQ(refusal_of(bytes_of("solid a\nfacet normal 0 0 1\nouter loop\nvertex a b c\nendloop\n"
                                 "endfacet\nendsolid\n"),
                        "a.stl"),
-            "a.stl: a number is expected, and there is \"a b c\"");
+            "a.stl: there should be a number, but there is \"a b c\"");
   Bytes cut = binary_stl();
   cut.resize(cut.size() - 10);
-  EXPECT_NE(refusal_of(cut, "a.stl").find("its length does not fit its number of triangles"),
+  EXPECT_NE(refusal_of(cut, "a.stl").find("its length does not match its number of triangles"),
             std::string::npos);
   EXPECT_NE(refusal_of(bytes_of("v 0 0 0\nv 1 0 0\nl 1 2\n"), "a.obj").find("no triangles"),
             std::string::npos);
@@ -321,7 +321,7 @@ TEST(ModelFile, OutlivesFilesThatAreCutOffOrChanged) {
 TEST(ModelFile, SaysThatAPlyIsCutOffInItsHeader) {
   const std::string text = ply();
   EXPECT_EQ(refusal_of(bytes_of(text.substr(0, text.find("end_header"))), "a.ply"),
-            "a.ply: is cut off: its header has no end_header");
+            "a.ply: is not complete: its header has no end_header");
 }
 
 // Forty nodes, each with two references to the one before.
@@ -337,7 +337,7 @@ TEST(ModelFile, SaysThatItWouldTakeTooMuch) {
   const std::string one = "<instance_geometry url=\"#g\"/></node></visual_scene>";
   text.replace(text.find(one), one.size(), "<instance_node url=\"#n39\"/></node></visual_scene>");
   const std::string why = refusal_of(bytes_of(text), "a.dae");
-  EXPECT_NE(why.find("which is all that a model of its size gets"), std::string::npos) << why;
+  EXPECT_NE(why.find("this is the limit for a model of its size"), std::string::npos) << why;
 }
 
 int status_of(void (*end)()) {
@@ -362,17 +362,19 @@ TEST(ModelFile, SaysHowItsReaderEnded) {
   EXPECT_EQ(why([] { kill(getpid(), SIGSEGV); }),
             "is damaged: the program that reads it crashed (SIGSEGV)");
   EXPECT_EQ(why([] { kill(getpid(), SIGXCPU); }),
-            "takes more than 3 s to be read, which is all that a model of its size gets");
+            "takes more than 3 s to be read; this is the limit for a model of its size");
 }
 
 // The count exceeds any file of this size: no memory for it must be requested.
 TEST(ModelFile, OutlivesAPlyOfFourBillionVertices) {
   std::string text = ply();
   text.replace(text.find("vertex 4"), 8, "vertex 4000000000");
-  EXPECT_EQ(refusal_of(bytes_of(text), "a.ply"), "a.ply: says that it has more than fits into it");
+  EXPECT_EQ(refusal_of(bytes_of(text), "a.ply"),
+            "a.ply: says that it has more data than a file of its size can have");
   text = dae();
   text.replace(text.find("count=\"12\""), 10, "count=\"4000000000\"");
-  EXPECT_EQ(refusal_of(bytes_of(text), "a.dae"), "a.dae: says that it has more than fits into it");
+  EXPECT_EQ(refusal_of(bytes_of(text), "a.dae"),
+            "a.dae: says that it has more data than a file of its size can have");
 }
 
 TEST(ModelFile, GivesUpWhenItIsNotWanted) {

@@ -69,7 +69,7 @@ class Law:
     proxy: Affine  # tau2
 
 
-def _fed_forward(s: Session, p: Prediction, proxy: Proxy) -> Array:
+def _fed_forward(s: Session, p: Prediction) -> Array:
     """Share of the hand's observed torque that is fed forward (N,): with it, by Routh's criterion,
     no hand's mass makes device and proxy swing against each other."""
     k_vc, b_vc, delay = (
@@ -77,7 +77,7 @@ def _fed_forward(s: Session, p: Prediction, proxy: Proxy) -> Array:
     )
     alpha = s["/coupling/alpha"]
     own = np.trace(p.m1, axis1=1, axis2=2)
-    ratio = np.trace(proxy.m, axis1=1, axis2=2) / own
+    ratio = s.number("proxy.inertia_ratio")[:, 0]
     lag = own / alpha + (1.5 + delay) * s.tick
     most = b_vc * (1 / (b_vc + k_vc * lag) + 1 / (ratio * alpha))
     return np.minimum(1, most * (1 + ratio) / ratio)
@@ -93,7 +93,7 @@ def law(s: Session, p: Prediction, proxy: Proxy, r: Reserve) -> Law:
     c = (b_vc + k_vc * s.tick / 2)[:, :, None] * one
     s0 = k_vc * (p.met_x - s["/proxy/position"])
     gf = r.governor[:, None, None] * one
-    f1 = _fed_forward(s, p, proxy)[:, None] * apply(phi_t, s["/hand/torque_estimate"])
+    f1 = _fed_forward(s, p)[:, None] * apply(phi_t, s["/hand/torque_estimate"])
     # v_E = w - u, v_L = (1 - phi) w + phi u
     spring = Affine(c_el @ (one - phi) - c, c + c_el @ phi, gf - phi_t, -s0 - f1)
     shared = Affine(c_le - r.k_n, -c_le, 0 * one, r.u_n)

@@ -104,8 +104,10 @@ class _Network:
 
 def _added_mass(s: Session) -> tuple[Array, Array]:
     """eta and w_g of every row (N,), where eta is above 1. Above w_g the added mass is a damper of
-    beta = 2 zeta (eta - 1) w_g. Its delay bounds beta, and so w_g, or at last eta."""
-    eta, t = s["/coupling/eta"], s.tick
+    beta = 2 zeta (eta - 1) w_g. Its delay bounds beta, and so w_g, or at last eta. A proxy of
+    `ratio` times the device's inertia bounds eta at 1 + 1/ratio."""
+    t = s.tick
+    eta = np.minimum(s["/coupling/eta"], 1 + 1 / s.number("proxy.inertia_ratio")[:, 0])
     _, most = s.possible_delays
     with np.errstate(divide="ignore"):
         beta = np.minimum(_OWN / t, _LATE / (most * t))

@@ -154,10 +154,10 @@ TEST_F(AnalysisWords, ExplainEachChart) {
   EXPECT_THAT(walls, HasSubstr(mine.bound));
   EXPECT_THAT(walls, HasSubstr(fmt::format("{:.0f} N/m", l.every_hand)));
   EXPECT_THAT(walls, HasSubstr("Colgate and Schenkel"));
-  const std::string inertia = within("inertia felt [g at the tip] over frequency [Hz]");
+  const std::string inertia = within("inertia felt [g at tip] against frequency [Hz]");
   EXPECT_THAT(inertia, HasSubstr("at ? 0.6"));
-  EXPECT_THAT(inertia, HasSubstr(fmt::format("natural {:.3g} g", 1e3 * l.felt.m)));
-  const std::string damping = within("damping felt [N s/m] over frequency [Hz]");
+  EXPECT_THAT(inertia, HasSubstr(fmt::format("inertia of {:.3g} g", 1e3 * l.felt.m)));
+  const std::string damping = within("damping felt [N s/m] against frequency [Hz]");
   EXPECT_THAT(damping, HasSubstr(fmt::format("{:.2g} N s/m", l.felt.least_damping(0.6, p_.band))));
   EXPECT_THAT(damping, HasSubstr(fmt::format("up to {:.3g} Hz", p_.band)));
 }
@@ -169,8 +169,8 @@ TEST_F(AnalysisWords, ExplainEachFigure) {
   for (const auto& [label, words] :
        {std::pair("stiffest in this scene", "This coupling renders this stiffness well"),
         {"felt at 7 Hz", "Inertia and damping at the tip"},
-        {"?_min, all frequencies", "the worst mode at this pose"},
-        {"?_min, this band", "only below the human's bandwidth"},
+        {"?_min, all frequencies", "the mode with the highest limit"},
+        {"?_min in the band", "only below the human's bandwidth"},
         {"?_min in this grip", "Routh"},
         {"modes of M_L", "Eigenvalues of M1 + M2"},
         {"slowest pole in this grip", "held by the grip"}}) {

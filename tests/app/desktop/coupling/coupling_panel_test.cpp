@@ -193,8 +193,8 @@ TEST_F(CouplingWords, SayWhichPromiseIsBrokenAndByHowMuch) {
   EXPECT_TRUE(broken("Condition (3), device"));
   EXPECT_EQ(value("Condition (3), device"), "broken  -0.004");
   EXPECT_EQ(value("Condition (3), proxy"), "broken  -0.005");
-  EXPECT_THAT(hint("Condition (3), device"), HasSubstr("b_d is 0.004 N m s/rad short of"));
-  EXPECT_THAT(hint("Condition (3), proxy"), HasSubstr("b_v is 0.005 N m s/rad short of"));
+  EXPECT_THAT(hint("Condition (3), device"), HasSubstr("b_d is 0.004 N m s/rad smaller than"));
+  EXPECT_THAT(hint("Condition (3), proxy"), HasSubstr("b_v is 0.005 N m s/rad smaller than"));
   EXPECT_TRUE(find("Advanced: condition (3) broken"));
   EXPECT_TRUE(broken("Least stable ? in this grip")) << "0.35 is below 0.4";
   EXPECT_THAT(hint("Least stable ? in this grip"),
@@ -222,7 +222,7 @@ TEST_F(CouplingWords, SayWhatConditionThreeAsksForThroughDelays) {
   EXPECT_THAT(both, HasSubstr("b_v minus (2 b_vc + k_vc ((T + delay) / 2 + link)"));
   a_.condition3.known = false;
   draw();
-  EXPECT_THAT(hint("Condition (3), device"), HasSubstr("no bound is known"));
+  EXPECT_THAT(hint("Condition (3), device"), HasSubstr("no limit is known"));
 }
 
 TEST_F(CouplingWords, SayWhetherFiguresAreMeasuredWhereThatMatters) {
@@ -232,7 +232,7 @@ TEST_F(CouplingWords, SayWhetherFiguresAreMeasuredWhereThatMatters) {
   draw();
   EXPECT_EQ(value("These figures are"), "assumed");
   EXPECT_THAT(hint("These figures are"),
-              HasSubstr("limpid identify measures inertia, damping and delay."));
+              HasSubstr("`limpid identify` measures inertia, damping and delay."));
   a_.measured = true;
   draw();
   EXPECT_EQ(value("These figures are"), "measured");
@@ -273,7 +273,7 @@ TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
         "Ticks in which Limpid slowed objects"}) {
     EXPECT_TRUE(broken(bad)) << bad;
   }
-  EXPECT_THAT(hint("Damping removed"), HasSubstr("cancels less of the device's damping"));
+  EXPECT_THAT(hint("Damping removed"), HasSubstr("cancels a smaller part of the device's damping"));
   now_.contact_governor = 0.996;
   draw();
   EXPECT_FALSE(broken("Wall force rendered")) << "it reads 100 %";
@@ -289,7 +289,7 @@ TEST_F(CouplingWords, OfTanksSayWhatTheyHoldBack) {
   draw();
   EXPECT_EQ(value("Proxy moves freely"), "50 %");
   EXPECT_EQ(value("Torque rendered"), "75 %");
-  EXPECT_THAT(hint("Torque rendered"), HasSubstr("The device's tank is low"));
+  EXPECT_THAT(hint("Torque rendered"), HasSubstr("The device's energy tank is low"));
 }
 
 TEST_F(CouplingWords, NameMotorsAtTheirLimit) {
@@ -303,7 +303,7 @@ TEST_F(CouplingWords, NameMotorsAtTheirLimit) {
 
 TEST_F(CouplingWords, BreakAndRepairPassivityOfTheVirtualArm) {
   draw();
-  EXPECT_THAT(hint("Break passivity"), HasSubstr("Repair puts everything back."));
+  EXPECT_THAT(hint("Break passivity"), HasSubstr("Repair puts all settings back."));
   click("Break passivity");
   EXPECT_EQ(asked_, "coupling.break_passivity");
   repair_ = true;
@@ -335,7 +335,7 @@ TEST_F(CouplingWords, FitGainsToTheArm) {
   p_.k_vc = 2 * p_.k_vc;
   p_.eta = 0.77;
   draw();
-  EXPECT_THAT(hint("Fit gains to this arm"), HasSubstr("condition (3) just holds"));
+  EXPECT_THAT(hint("Fit gains to this arm"), HasSubstr("condition (3) of the paper is just met"));
   click("Fit gains to this arm");
   EXPECT_EQ(p_.k_vc, fit.k_vc);
   EXPECT_EQ(p_.b_vc, fit.b_vc);
@@ -350,7 +350,7 @@ TEST_F(CouplingWords, OfALinkSayHowLongItIs) {
   draw();
   EXPECT_TRUE(find("Link: 5 ticks, 10 ms each way"));
   click("Link: 5 ticks, 10 ms each way");
-  EXPECT_EQ(value("Through it"), info(p_.kind).through_link);
+  EXPECT_EQ(value("Through the link"), info(p_.kind).through_link);
 }
 
 // A re-run makes the changes of the recording, but for settings that it begins otherwise.

@@ -74,7 +74,7 @@ TEST_F(NumbersOfATick, AreThoseOfItsRow) {
        {std::pair("t", "Time at which the tick begins"),
         {"gap of the tips", "Distance between the tips of device and proxy"},
         {"force of the motors", "on the device's tip"},
-        {"solved", "limits agree"},
+        {"solved", "the motors' limits"},
         {"reserve", "the law may still give"}}) {
     EXPECT_THAT(hint(label), HasSubstr(words)) << label;
   }
@@ -124,7 +124,7 @@ TEST_F(NumbersOfATick, CountWhatMoves) {
   EXPECT_EQ(value("sweeps"), "12");
   EXPECT_EQ(value("awake"), "1 of 1");
   EXPECT_EQ(value("objects gained"), "-2.0000 mJ");
-  EXPECT_THAT(hint("sweeps"), HasSubstr("over all contacts"));
+  EXPECT_THAT(hint("sweeps"), HasSubstr("through all contacts"));
   EXPECT_THAT(hint("objects gained"), HasSubstr("minus their energy at the start"));
 }
 

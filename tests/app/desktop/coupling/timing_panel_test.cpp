@@ -12,16 +12,16 @@ using testing::Not;
 // stall.
 TEST(TimingPanel, SaysThatWithMotorsLateTicksAreGivenUpAtOnce) {
   const LateTicks words = late_ticks(true);
-  EXPECT_THAT(words.missed, Not(HasSubstr("catches up on these ticks")));
-  EXPECT_THAT(words.slipped, HasSubstr("never makes up for skipped ticks"));
+  EXPECT_THAT(words.missed, Not(HasSubstr("runs faster until it is on time again")));
+  EXPECT_THAT(words.slipped, HasSubstr("never runs skipped ticks later"));
   EXPECT_THAT(words.after_a_slip, HasSubstr("skipped ticks"));
   EXPECT_THAT(words.after_a_slip, Not(HasSubstr("20 ticks")));
 }
 
 TEST(TimingPanel, SaysThatTheVirtualArmCatchesUpUntilAStall) {
   const LateTicks words = late_ticks(false);
-  EXPECT_THAT(words.missed, HasSubstr("catches up on these ticks"));
-  EXPECT_THAT(words.after_a_slip, HasSubstr("over 20 ticks"));
+  EXPECT_THAT(words.missed, HasSubstr("runs faster until it is on time again"));
+  EXPECT_THAT(words.after_a_slip, HasSubstr("more than 20 ticks"));
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST_F(DeviceFields, OfAJoystickWithoutUnitsAreForceAndRange) {
   uncalibrated_ = true;
   draw();
   EXPECT_THAT(hint("full force"), HasSubstr("USB gives forces without a unit"));
-  EXPECT_THAT(hint("range"), HasSubstr("How far the stick tilts"));
+  EXPECT_THAT(hint("range"), HasSubstr("Largest angle of the stick"));
 }
 
 TEST_F(DeviceFields, OfLimitsNameEachOfThem) {

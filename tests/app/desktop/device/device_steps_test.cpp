@@ -70,13 +70,13 @@ TEST_F(TheDevicesCard, SaysWhatWasMeasuredAndReckonsWithIt) {
   EXPECT_THAT(said, HasSubstr("give 1.250 of the commanded torque"));
   EXPECT_THAT(said, HasSubstr("2.1 ms, measured"));
   EXPECT_TRUE(find("Identify again...", kSidePanel));
-  click("Reckon with 2 ticks of delay", kSidePanel);
+  click("Calculate with 2 ticks of delay", kSidePanel);
   EXPECT_EQ(desktop->settings.parameters().delay, 2);
   frames(3);
-  EXPECT_THAT(says(), Not(HasSubstr("Reckon with"))) << "it does";
+  EXPECT_THAT(says(), Not(HasSubstr("Calculate with"))) << "it does";
   notes().delay = 0.0009;
   frames(3);
-  EXPECT_TRUE(find("Reckon with 1 tick of delay", kSidePanel));
+  EXPECT_TRUE(find("Calculate with 1 tick of delay", kSidePanel));
 }
 
 TEST_F(TheDevicesCard, SaysWhyThereIsNoForce) {

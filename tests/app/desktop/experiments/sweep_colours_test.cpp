@@ -101,7 +101,7 @@ TEST_F(ColoursOfASweep, AreExplainedByTheScale) {
   EXPECT_GE(numbers, 2);
   bool named = false;
   for (const test::DrawnText& each : test::drawn_texts()) {
-    named = named || (each.text.starts_with("hand torque, rms [mN m]") &&
+    named = named || (each.text.starts_with("rms hand torque [mN m]") &&
                       each.max.y < rect().min.y && each.max.x > rect().max.x);
   }
   EXPECT_TRUE(named) << "above the scale";
@@ -109,7 +109,7 @@ TEST_F(ColoursOfASweep, AreExplainedByTheScale) {
 
 TEST_F(ColoursOfASweep, OfAYesOrNoAreTwo) {
   open(kColoured);
-  click("hand torque, rms", "Sweep");
+  click("rms hand torque", "Sweep");
   click("comes to rest", "##Combo");
   ASSERT_TRUE(until([&] { return drawn() && map().yes_no; }));
   frames(3);

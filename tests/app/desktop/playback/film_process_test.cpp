@@ -114,7 +114,7 @@ TEST_F(AFilm, SaysWhyItFailed) {
   };
   EXPECT_EQ(why("fails"), "there is no such session");
   EXPECT_EQ(part_, 0.5);
-  EXPECT_THAT(why("dies"), testing::HasSubstr("before its time"));
+  EXPECT_THAT(why("dies"), testing::HasSubstr("ended too early"));
 }
 
 }  // namespace

@@ -343,7 +343,7 @@ TEST(SceneEditor, LetsGoOfABodyThatIsRemoved) {
   SceneEditor editor = kitchen();
   const SceneEditor::Version before = editor.version();
   const std::string said = editor.remove(kPot);
-  EXPECT_THAT(said, testing::HasSubstr("lid's joint now holds to the world"));
+  EXPECT_THAT(said, testing::HasSubstr("The joint of lid now connects to the world"));
   EXPECT_THAT(said, testing::HasSubstr("2 springs"));
   EXPECT_EQ(editor.scene().objects.at(kPot).body->joint->to, "");
   EXPECT_TRUE(editor.scene().springs.empty());

@@ -155,9 +155,10 @@ TEST(Keys, HelpListsExactlyTheKeysThatAct) {
     // Texts such as "[, ]"; mouse actions are written in words.
     for (const std::string& key : split(shortcut.keys)) listed.insert(key);
   }
-  for (const char* other : {"left drag at the tip", "Ctrl+left drag", "left drag elsewhere",
-                            "right drag", "middle drag", "Shift+right drag", "wheel", "click",
-                            "right click", "plots", "sliders", "gamepad", "Esc", "Space"}) {
+  for (const char* other :
+       {"drag the tip with the left button", "Ctrl+left drag", "left drag elsewhere", "right drag",
+        "middle drag", "Shift+right drag", "wheel", "click", "right click", "plots", "sliders",
+        "gamepad", "Esc", "Space"}) {
     EXPECT_EQ(listed.erase(other), 1u) << other;
   }
   std::set<std::string> expected;

@@ -948,11 +948,12 @@ TEST_F(ADesktop, SaysOverThePictureThatThereIsNoForceAndWhy) {
   desktop->cut_force();
   ASSERT_TRUE(until([&] { return arming() == Arming::off; }));
   ASSERT_EQ(desktop->banners().size(), 1u);
-  EXPECT_EQ(desktop->banners()[0].text, "Force is off: not armed. F arms the force.");
+  EXPECT_EQ(desktop->banners()[0].text, "Force is off: not armed. Key F switches the force on.");
   ASSERT_EQ(desktop->banners()[0].buttons.size(), 1u);
   EXPECT_STREQ(desktop->banners()[0].buttons[0].command, "device.force");
   record_something();
-  EXPECT_EQ(desktop->banners()[0].text, "Recording without force: not armed. F arms the force.");
+  EXPECT_EQ(desktop->banners()[0].text,
+            "Recording without force: not armed. Key F switches the force on.");
   EXPECT_TRUE(desktop->banners()[0].bad);
   desktop->world.toggle_recording();
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
@@ -1005,9 +1006,10 @@ TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
     ASSERT_FALSE(banners.empty());
     const Banner& banner = banners.back();
     EXPECT_TRUE(banner.bad);
-    EXPECT_EQ(banner.text,
-              "The loop chatters: table top (5000 N/m) is stiffer than the proposed law can "
-              "render there without chatter.");
+    EXPECT_EQ(
+        banner.text,
+        "The loop chatters, because table top (5000 N/m) is stiffer than the proposed law can "
+        "render there without chatter.");
     ASSERT_EQ(banner.buttons.size(), 3u);
     EXPECT_EQ(banner.buttons[0].label, "Predictive");
     // The stiffness is that of `analyze` for the built-in arm, in two digits.

@@ -88,7 +88,7 @@ TEST_F(Dialog, OfPresetsTakesANameByEnterAndKeepsWhatCameAlong) {
 TEST_F(Dialog, OfLayoutsSetsPanelsAndPlots) {
   run("plots.layouts");
   frames(3);
-  EXPECT_THAT(words("Layouts"), HasSubstr("Which plots and panels the window shows, by name."));
+  EXPECT_THAT(words("Layouts"), HasSubstr("which plots and panels the window shows."));
   click("Frequencies", "Layouts");
   click("Use", "Layouts");
   frames(3);
@@ -114,7 +114,7 @@ TEST_F(Dialog, OfAMarkIsInThePlotsWhereNothingIsRecorded) {
   away();
   run("session.mark");
   frames(4);
-  EXPECT_THAT(words("Mark"), ContainsRegex("at [0-9.]+ s; in the plots; nothing is recorded"));
+  EXPECT_THAT(words("Mark"), ContainsRegex("at [0-9.]+ s; only in the plots .no recording."));
   EXPECT_TRUE(find("mark 1", "Mark"));
   write_over("here it was");
   click("Set (Enter)", "Mark");
@@ -126,7 +126,7 @@ TEST_F(Dialog, OfAMarkIsInThePlotsWhereNothingIsRecorded) {
   frames(4);
   EXPECT_TRUE(find("mark 2", "Mark"));
   write_over(std::string(300, 'x'));
-  EXPECT_THAT(words("Mark"), ContainsRegex("300 bytes; at most [0-9]+ are kept"));
+  EXPECT_THAT(words("Mark"), ContainsRegex("300 bytes; allowed: at most [0-9]+"));
   const std::size_t count = marks.size();
   click("Set (Enter)", "Mark");
   EXPECT_EQ(desktop->live.stage().history.marks().size(), count) << "it is too long";
@@ -179,7 +179,7 @@ TEST_F(Dialog, OfAnExportOffersAVideoOfRecordingsAlone) {
   frames(4);
   click("a plot, as a picture", "Export");
   click("the recording, as a video");
-  EXPECT_THAT(words("Export"), HasSubstr("Length, size and speed are asked for next."));
+  EXPECT_THAT(words("Export"), HasSubstr("The next dialog asks for length, size and speed."));
   click("Go on (Enter)", "Export");
   EXPECT_EQ(desktop->dialog.name(), "video");
 }
@@ -229,7 +229,7 @@ TEST_F(Dialog, OfANewFileAsksBeforeItReplacesOne) {
   frames(4);
   write_over((folder / "old").string());
   click("Save", "Save scene as");
-  EXPECT_THAT(words("Save scene as"), HasSubstr("old.toml is there already."));
+  EXPECT_THAT(words("Save scene as"), HasSubstr("old.toml exists already."));
   click("Replace it", "Save scene as");
   EXPECT_TRUE(until([&] { return desktop->document.file() == folder / "old.toml"; }));
   run("scene.save_as");
@@ -285,7 +285,7 @@ TEST_F(Dialog, OfTheGalleryOpensAScene) {
   frames(4);
   const std::string shown = words();
   EXPECT_THAT(shown, HasSubstr("Shipped with Limpid"));
-  EXPECT_THAT(shown, HasSubstr("Arrows and Enter choose a scene"));
+  EXPECT_THAT(shown, HasSubstr("Arrow keys and Enter choose a scene"));
   EXPECT_THAT(shown, HasSubstr("Play its recorded session"));
   press(GLFW_KEY_RIGHT);
   press(GLFW_KEY_RIGHT);
@@ -400,7 +400,7 @@ TEST_F(Dialog, OfARecordingThatIsUnderWayKeepsIt) {
   ASSERT_TRUE(until([&] { return desktop->live.loop().recording(); }));
   desktop->dialog.open("quit");
   frames(5);
-  EXPECT_THAT(words("End the recording?"), HasSubstr("What is recorded so far is kept."));
+  EXPECT_THAT(words("End the recording?"), HasSubstr("The part recorded until now is kept."));
   click("Go on (Esc)", "End the recording?");
   EXPECT_FALSE(desktop->asked.close);
   EXPECT_EQ(desktop->dialog.name(), "");
@@ -462,7 +462,7 @@ TEST_F(Dialog, OfExperimentsListsThemAndRunsOne) {
   run("experiments.show");
   frames(4);
   const std::string shown = words();
-  EXPECT_THAT(shown, HasSubstr("Each is run by the ordinary loop"));
+  EXPECT_THAT(shown, HasSubstr("Each experiment runs in the ordinary loop"));
   EXPECT_THAT(shown, HasSubstr("Run all"));
   for (const Experiment& each : experiments()) {
     EXPECT_TRUE(noted_place("Experiments", each.name)) << each.name;
@@ -504,7 +504,8 @@ TEST_F(Dialog, OfExperimentsLetsThemWaitForEachOtherAndStopsThem) {
   EXPECT_THAT(desktop->experiments_under_way, testing::StartsWith("1 of 2: passivity"));
   EXPECT_FALSE(find("Run all"));
   click("Stop");
-  ASSERT_TRUE(until([&] { return said("Stopped; finished trials are kept"); }));
+  ASSERT_TRUE(
+      until([&] { return said("The experiments have stopped. Finished trials are kept"); }));
   frames(5);
   EXPECT_EQ(button_of("passivity").text, "Run");
   EXPECT_EQ(button_of("inertia").text, "Run") << "it has not begun";

@@ -149,7 +149,7 @@ TEST_F(ANewSweep, IsStartedAndShown) {
   }
   point_at(find("recorded hand: cup", "##Combo")->middle());
   turn_wheel(-30);
-  click("a tap on a wall of its own, 4 N, without the scene", "##Combo");
+  click("a tap with 4 N on a wall of its own, without the scene", "##Combo");
   frames(3);
   click_at("measure");
   frames(3);

@@ -83,13 +83,13 @@ TEST_F(MapOfASweep, NamesMeasureAxesAndHowFarItIs) {
   open(test::sweep_plan(dir, kMapPlan));
   EXPECT_EQ(desktop->dialog.name(), "sweep");
   const std::string shown = words();
-  for (const char* text : {"Sweep: Grips", "hand torque, rms", "over", "and", "Coupling",
-                           "standard", "Impedance scaling \xCE\xB7 [-] over Grip stiffness [N/m]",
-                           "18 of 18 points", "hand torque, rms [mN m]"}) {
+  for (const char* text : {"Sweep: Grips", "rms hand torque", "over", "and", "Coupling", "standard",
+                           "Impedance scaling \xCE\xB7 [-] over Grip stiffness [N/m]",
+                           "18 of 18 points", "rms hand torque [mN m]"}) {
     EXPECT_THAT(shown, HasSubstr(text));
   }
   EXPECT_THAT(shown, HasSubstr(theory_label("pr")));
-  EXPECT_THAT(shown, HasSubstr("A click runs that point again and plays it"));
+  EXPECT_THAT(shown, HasSubstr("A click runs the point again and plays it"));
 }
 
 // Points are numbered with the last axis fastest: kind, stiffness (1000 first), eta.
@@ -105,7 +105,7 @@ TEST_F(MapOfASweep, SaysThePointUnderTheMouse) {
     EXPECT_EQ(pointed(),
               fmt::format("point\n{}\nCoupling\nstandard\nGrip stiffness\n{} N/m\nImpedance "
                           "scaling \xCE\xB7\n{:.4g}\n"
-                          "hand torque, rms\n{} N m\ncomes to rest\n{}\n",
+                          "rms hand torque\n{} N m\ncomes to rest\n{}\n",
                           number, x == 0 ? "100" : "1000", 0.4 + 0.3 * y, in_table(number, 0),
                           in_table(number, 1) == "1" ? "yes" : "no"));
   }
@@ -135,13 +135,13 @@ TEST_F(MapOfASweep, PlaysThePointThatIsClicked) {
   click(cell(1, 2, 1, 3));
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   EXPECT_TRUE(
-      said("Point 1: kind standard, stiffness 1000 N/m, eta 0.7. The result equals the "
-           "table to the last bit."));
+      said("Point 1: kind standard, stiffness 1000 N/m, eta 0.7. The result is exactly the "
+           "same as in the table."));
   EXPECT_EQ(desktop->dialog.name(), "");
   EXPECT_TRUE(fs::exists(folder() / "points/1.h5"));
   frames(4);
   EXPECT_THAT(sentences(),
-              HasSubstr("kind standard, stiffness 1000 N/m, eta 0.7: hand torque, rms "));
+              HasSubstr("kind standard, stiffness 1000 N/m, eta 0.7: rms hand torque "));
   click("Back to map (F6)");
   EXPECT_EQ(desktop->dialog.name(), "sweep");
 }
@@ -156,7 +156,7 @@ TEST_F(MapOfASweep, TellsWhatThePointIsThatIsPlayed) {
   const SweepTable& table = desktop->sweep.sweep()->table;
   const std::vector<std::string> verdict = lines(played.verdict());
   ASSERT_GE(verdict.size(), 2u);
-  EXPECT_EQ(verdict[0], fmt::format("hand torque, rms: {:.4g} N m", table.at(1, 0)));
+  EXPECT_EQ(verdict[0], fmt::format("rms hand torque: {:.4g} N m", table.at(1, 0)));
   EXPECT_EQ(verdict[1], table.at(1, 1) == 1 ? "comes to rest: yes" : "comes to rest: no");
 }
 
@@ -227,9 +227,9 @@ TEST_F(MapOfASweep, ShowsWhatIsChosen) {
   point_at(cell(2, 3, 1, 2));
   EXPECT_THAT(pointed(), HasSubstr("point\n14\nCoupling\npredictive\nGrip stiffness\n1000 "
                                    "N/m\nImpedance scaling \xCE\xB7\n1\n"));
-  choose("hand torque, rms", "comes to rest");
+  choose("rms hand torque", "comes to rest");
   EXPECT_THAT(words(), HasSubstr("comes to rest: yes"));
-  EXPECT_THAT(words(), Not(HasSubstr("hand torque, rms [mN m]"))) << "a yes or no has no scale";
+  EXPECT_THAT(words(), Not(HasSubstr("rms hand torque [mN m]"))) << "a yes or no has no scale";
   choose("Grip stiffness", "Coupling");
   EXPECT_THAT(words(), HasSubstr("Coupling over Impedance scaling \xCE\xB7 [-]"));
   EXPECT_EQ(desktop->sweep.choice().y, 0u);
@@ -242,10 +242,10 @@ TEST_F(MapOfASweep, FollowsATableThatFills) {
   point_at(cell(0, 2, 2, 3));
   EXPECT_THAT(pointed(), HasSubstr("point\n5\n"));
   EXPECT_THAT(pointed(), HasSubstr("not computed yet"));
-  EXPECT_THAT(pointed(), Not(HasSubstr("hand torque, rms\n")));
+  EXPECT_THAT(pointed(), Not(HasSubstr("rms hand torque\n")));
   test::swept(plan, folder());
   EXPECT_TRUE(until([&] { return find("18 of 18 points").has_value(); }));
-  const std::string measured = "hand torque, rms\n" + in_table(5, 0);
+  const std::string measured = "rms hand torque\n" + in_table(5, 0);
   EXPECT_TRUE(until([&] { return pointed().find(measured) != std::string::npos; })) << pointed();
 }
 
@@ -260,10 +260,10 @@ axis = [{ key = "coupling.eta", from = 0.4, to = 1, count = 3 }]
 )"));
   EXPECT_EQ(desktop->sweep.map()->kind, SweepMap::Kind::curve);
   EXPECT_THAT(words(), testing::ContainsRegex(
-                           "hand torque, rms .mN m.[^\n]* over Impedance scaling .* .-.\n"));
+                           "rms hand torque .mN m.[^\n]* over Impedance scaling .* .-.\n"));
   const ScreenRect map = desktop->sweep.on_screen->rect;
   point_at({map.max.x - 5, map.min.y + 5});
-  EXPECT_EQ(pointed(), "point\n2\nImpedance scaling \xCE\xB7\n1\nhand torque, rms\n" +
+  EXPECT_EQ(pointed(), "point\n2\nImpedance scaling \xCE\xB7\n1\nrms hand torque\n" +
                            in_table(2, 0) + " N m\n");
   point_at({map.min.x + 5, map.max.y - 5});
   EXPECT_THAT(pointed(), HasSubstr("point\n0\nImpedance scaling \xCE\xB7\n0.4\n"));
@@ -302,7 +302,7 @@ seconds = 0.02
 measure = ["human_rms"]
 )");
   desktop->world.open_files({test::swept(plan, folder())});
-  EXPECT_TRUE(until([&] { return said("its plan has no axis"); }));
+  EXPECT_TRUE(until([&] { return said("the sweep's plan has no axis"); }));
   EXPECT_EQ(desktop->sweep.sweep(), nullptr);
 }
 

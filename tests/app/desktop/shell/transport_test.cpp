@@ -87,8 +87,9 @@ TEST_F(TheBarBelow, HasMarksAtTheirMoments) {
   EXPECT_NEAR(place->x, x_of(at), 2);
   EXPECT_NEAR(place->y, line().y, 3);
   point_at({place->x + 2, place->y});
-  EXPECT_THAT(sentences("##Tooltip"),
-              HasSubstr("a moment A click goes there; a right click renames or removes it."));
+  EXPECT_THAT(
+      sentences("##Tooltip"),
+      HasSubstr("a moment A click goes to this mark. A right click renames or removes the mark."));
   click(ImVec2{place->x + 3, place->y});
   EXPECT_NEAR(player().time(), at, 1e-9) << "exactly there, beside it as well";
   EXPECT_EQ(desktop->dialog.name(), "");
@@ -101,7 +102,7 @@ TEST_F(TheBarBelow, HasMarksAtTheirMoments) {
   EXPECT_EQ(desktop->marking.text(), "a moment");
   desktop->escape();
   point_at({place->x + 12, place->y});
-  EXPECT_THAT(sentences("##Tooltip"), HasSubstr("Drag to any moment"));
+  EXPECT_THAT(sentences("##Tooltip"), HasSubstr("Drag to go to any moment"));
 }
 
 TEST_F(TheBarBelow, LeavesOutWhatHasNoRoom) {

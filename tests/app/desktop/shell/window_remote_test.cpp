@@ -141,7 +141,7 @@ TEST_F(LedWindow, RefusesToOpenWhatIsNotThereOrNotAllowed) {
   desktop->world.add_object({.shape = Sphere{}});
   turns(2);
   EXPECT_THAT(refused({{"do", "open"}, {"scene", "spheres.toml"}}),
-              HasSubstr("changes that nobody has saved"));
+              HasSubstr("the scene has unsaved changes"));
 }
 
 TEST_F(LedWindow, RecordsUnderTheNameThatIsAskedFor) {
@@ -249,7 +249,8 @@ TEST_F(LedWindow, SavesAPictureAndSaysWhatBecameOfIt) {
   client->say(json{{"id", 1}, {"do", "picture"}, {"file", file.string()}}.dump());
   ASSERT_TRUE(in_time([&] { return desktop->asked.picture == file; }));
   client->say(json{{"id", 2}, {"do", "picture"}, {"file", (dir / "b.png").string()}}.dump());
-  EXPECT_THAT(hear(*client)["error"].get<std::string>(), HasSubstr("another one is being saved"));
+  EXPECT_THAT(hear(*client)["error"].get<std::string>(),
+              HasSubstr("another picture is being saved"));
   desktop->asked.picture.clear();
   remote->saved(std::array{SavedPicture{dir / "other.png", ""}, SavedPicture{file, ""}});
   EXPECT_EQ(hear(*client), (json{{"id", 1}, {"ok", {{"file", file.string()}}}}));

@@ -48,8 +48,8 @@ TEST_F(Words, SayThatASceneWhichIsLoadedWaitsForTheEndOfARecording) {
   const auto says = [](const char* what) {
     return words("loading").find(what) != std::string::npos;
   };
-  EXPECT_TRUE(until([&] { return says("loaded, and shown when the recording ends (R)"); }));
-  EXPECT_FALSE(says("making it touchable"));
+  EXPECT_TRUE(until([&] { return says("loaded; it is shown when the recording ends (R)"); }));
+  EXPECT_FALSE(says("preparing it for touch"));
   ASSERT_TRUE(until([&] { return desktop->live.loop().snapshot().recording; }));
   desktop->world.toggle_recording();
   EXPECT_TRUE(until([&] { return !desktop->document.loader().busy(); }));
@@ -238,8 +238,8 @@ TEST_F(Words, OfSectionsAreThereOnceTheyAreUnfolded) {
         "force of the motors", "stiffest in this scene"}) {
     EXPECT_NE(hint(label, kSidePanel), "") << label;
   }
-  EXPECT_THAT(shown, HasSubstr("inertia felt [g at the tip] over frequency [Hz]"));
-  EXPECT_THAT(shown, HasSubstr("damping felt [N s/m] over frequency [Hz]"));
+  EXPECT_THAT(shown, HasSubstr("inertia felt [g at tip] against frequency [Hz]"));
+  EXPECT_THAT(shown, HasSubstr("damping felt [N s/m] against frequency [Hz]"));
   for (const char* law : {"standard ", "proposed ", "predictive ", "tank "}) {
     EXPECT_THAT(shown, HasSubstr(law)) << "a wall's bar";
   }
@@ -389,7 +389,7 @@ TEST_F(Words, OfTheStatusLineAreLawRateAndForce) {
   desktop->cut_force();
   EXPECT_TRUE(
       until([&] { return words("##MainMenuBar").find("force off [F]") != std::string::npos; }));
-  EXPECT_EQ(hint("force off [F]", "##MainMenuBar"), "F arms the force");
+  EXPECT_EQ(hint("force off [F]", "##MainMenuBar"), "Key F switches the force on");
   desktop->settings.parameters().kind = CouplingKind::standard;
   frames(3);
   EXPECT_THAT(words("##MainMenuBar"), HasSubstr("STANDARD"));

@@ -105,7 +105,8 @@ TEST_F(SignsOverThePicture, TellNoticesBelowEachOtherWithinTheView) {
       true);
   for (const float wide : {1200.f, 700.f, 300.f}) {
     view_ = {{100, 50}, {100 + wide, 700}};
-    show([&] { draw_notices(notices, view_, signs_); });
+    NoticeSigns signs;
+    show([&] { signs.draw(notices, view_, signs_, {}); });
     const auto first = find("Started over");
     ASSERT_TRUE(first);
     bool more = false;
@@ -119,6 +120,22 @@ TEST_F(SignsOverThePicture, TellNoticesBelowEachOtherWithinTheView) {
     }
     EXPECT_TRUE(more);
     EXPECT_EQ(first->min.y<signs_.max.y, wide> 650) << wide << ": beside";
+  }
+}
+
+TEST_F(SignsOverThePicture, TellNoticesAtTheFootWhereATipIsAtTheTop) {
+  Notices notices;
+  notices.say("Started over, at rest.");
+  NoticeSigns signs;
+  view_ = {{100, 50}, {1300, 700}};
+  const ScreenRect tip{{view_.min.x, view_.min.y}, {view_.max.x, view_.min.y + 100}};
+  const float middle = (view_.min.y + view_.max.y) / 2;
+  for (const auto& [crowd, low] : {std::pair(Crowd{}, false), {Crowd{{tip}, {}}, true}}) {
+    show([&] { signs.draw(notices, view_, signs_, crowd); });
+    const auto said = find("Started over");
+    ASSERT_TRUE(said);
+    EXPECT_EQ(said->min.y > middle, low);
+    expect_in_view({said->min, said->max});
   }
 }
 

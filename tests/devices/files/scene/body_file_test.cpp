@@ -267,13 +267,13 @@ TEST(BodyFile, RefusesWhatAJointCannotBe) {
       {joint(axis + "detent = { force = 1, period = 0 }\n"), {"body.joint.detent.period", "0"}},
       {joint(axis + "detent = { force = 1, period = 1, phase = 1 }\n"), {"phase", "force, period"}},
       {joint(axis + "travel = [[0, 1], [0, 2]]\n"),
-       {"x.toml:9: body.joint.travel", "[[0, 1], [0, 2]]", "further"}},
+       {"x.toml:9: body.joint.travel", "[[0, 1], [0, 2]]", "larger"}},
       {joint(axis + "travel = []\n"), {"body.joint.travel", "at least one"}},
       {joint(axis + "travel = [0, 1]\n"), {"body.joint.travel", "lists of 2"}},
       {joint(axis + "to = \"b\"\n"), {"x.toml:9: body.joint.to", "\"b\"", "name of a body: a"}},
-      {joint(axis + "to = \"a\"\n"), {"x.toml:9: body.joint.to", "does not itself hang on"}},
+      {joint(axis + "to = \"a\"\n"), {"x.toml:9: body.joint.to", "is not itself attached to"}},
       {joint(axis + "to = \"b\"\n") + body("[body.joint]\nkind = \"ball\"\nto = \"a\"\n", "b"),
-       {"x.toml:9: body.joint.to", "\"b\"", "does not itself hang on"}},
+       {"x.toml:9: body.joint.to", "\"b\"", "is not itself attached to"}},
   });
 }
 
