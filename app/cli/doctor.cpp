@@ -71,7 +71,7 @@ int doctor(bool json) {
 Command declare_doctor(CLI::App& app) {
   auto* command = app.add_subcommand("doctor",
                                      "shows what is missing on this computer for real time, "
-                                     "devices and picture, and which command repairs each fault");
+                                     "devices and picture, and which command repairs it");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "one JSON object on standard output");
   command->footer(

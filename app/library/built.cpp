@@ -34,12 +34,39 @@ std::string point_text(const Point3& p) {
   return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", p[0], p[1], p[2]);
 }
 
+void refuse_not_finite(const std::string& what, std::span<const double> numbers) {
+  for (const double each : numbers) {
+    if (std::isfinite(each)) continue;
+    throw LoopError(
+        fmt::format("arm: {}: {} is not allowed; allowed: a finite number", what, each));
+  }
+}
+
+void refuse_not_finite(const ArmJoint& of) {
+  const auto refuse = [&](const char* what, std::span<const double> numbers) {
+    refuse_not_finite(fmt::format("joint '{}': {}", of.name, what), numbers);
+  };
+  refuse("position", of.position);
+  refuse("rpy", of.rpy);
+  refuse("axis", of.axis);
+  refuse("lower", {&of.lower, 1});
+  refuse("upper", {&of.upper, 1});
+  if (!std::isnan(of.effort)) refuse("effort", {&of.effort, 1});
+  refuse("damping", {&of.damping, 1});
+  refuse("friction", {&of.friction, 1});
+  refuse("mass", {&of.mass, 1});
+  refuse("center", of.center);
+  refuse("inertia", of.inertia);
+}
+
 }  // namespace
 
 std::string urdf_text(const ArmModel& arm) {
   ArmDescription out;
   out.name = arm.name;
+  refuse_not_finite("tip", arm.tip);
   for (const ArmJoint& of : arm.joints) {
+    refuse_not_finite(of);
     if (of.effort <= 0) {
       throw LoopError(
           fmt::format("arm: joint '{}': effort {} is not allowed; allowed: above 0; kGuessed lets "

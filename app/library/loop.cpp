@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "app/library/caller_device.h"
 #include "app/library/limpid/limpid.h"
 #include "app/library/plan.h"
+#include "app/run/analysis.h"
 #include "app/run/motor_limits.h"
 #include "app/run/reach_check.h"
 #include "app/run/recorder.h"
@@ -35,6 +37,8 @@ Point3 point3(const Vec3& at) { return {at.x(), at.y(), at.z()}; }
 double seconds_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
+
+constexpr double kLongestPeriod = 0.004;  // of a loop with real motors [s]
 
 bool finite_number(double x) { return std::isfinite(x); }
 
@@ -84,8 +88,9 @@ void compare_range(const ArmDescription& arm, std::size_t joint, double x,
   constexpr double kBeyond = 0.1;  // part of the range
   const double room = kBeyond * (of.upper - of.lower);
   if (x < of.lower - room || x > of.upper + room) {
-    throw LoopError(fmt::format("position: joint {} has {:.4g}; needed: {}, the arm's range",
-                                joint + 1, x * unit, range));
+    throw LoopError(fmt::format(
+        "position: joint {} has {:.4g}; needed: the arm's range of {}, or a tenth of it beyond",
+        joint + 1, x * unit, range));
   }
   notes.push_back(fmt::format("joint {} begins at {:.4g}, outside of its range of {}", joint + 1,
                               x * unit, range));
@@ -118,6 +123,8 @@ RigStart start_at(const ArmDescription& arm, std::span<const double> position,
 LoopError::~LoopError() = default;
 
 struct Loop::State {
+  static constexpr std::uint64_t kMeasured = 500;  // ticks
+
   State(LibraryPlan read, const LoopOptions& options);
 
   void begin(const RigStart& start);
@@ -128,6 +135,11 @@ struct Loop::State {
     return real ? as_taken(plan.parameters, RealDevice::of(plan.arm, 0)) : plan.parameters;
   }
   Vec3 tip() const noexcept { return ticks == 0 ? first_tip : rig->tip(); }
+  void measure(double elapsed) noexcept {
+    measured = std::min(measured + 1, kMeasured);
+    const double share = 1 / static_cast<double>(measured);
+    mean_period += share * (elapsed - mean_period);
+  }
   bool at_motor_limit() const;  // after a tick, as at_tip_limit()
   bool at_tip_limit() const;
   void in_si(std::span<const double> of_rig, std::span<double> into) const noexcept;
@@ -153,8 +165,11 @@ struct Loop::State {
   bool lost = false;  // was unstable since the begin
   Clock::time_point before{};
   Vec3 first_tip = Vec3::Zero();  // of the device before the first tick [m]
+  double mean_period = 0;  // time between ticks as measured, over about kMeasured of them [s]
+  std::uint64_t measured = 0;
   // Positions and one more of the reading that was not one a joint; 0 once force may be back.
   std::size_t wrong_count = 0;
+  const char* refused = nullptr;  // what is wrong with a reading of simulated motors
   ForceAsked force;
   std::unique_ptr<Recorder> recorder;
   bool recording = false;  // the recorder gets rows
@@ -164,7 +179,7 @@ Loop::State::State(LibraryPlan read, const LoopOptions& options)
     : plan(std::move(read.plan)),
       kinematics(plan.arm),
       notes(std::move(read.notes)),
-      real(options.motors == Motors::real),
+      real(options.motors != Motors::simulated),
       most_tip_force(options.limits.tip_force),
       layout(plan.layout()),
       units(layout, slides_of(plan.arm)),
@@ -348,11 +363,25 @@ LoopEnergy Loop::energy() const noexcept {
 
 bool Loop::diverged() const noexcept { return state_->lost; }
 
+Point3 Loop::contact_force() const noexcept {
+  if (state_->ticks == 0) return {};
+  const auto all = derived(row());
+  return {all[3 * kTotalForce], all[3 * kTotalForce + 1], all[3 * kTotalForce + 2]};
+}
+
+std::string Loop::not_passive_text() const {
+  const RunPlan& plan = state_->plan;
+  const Parameters p = state_->taken();
+  const Passivity judged = passivity(analyze(plan.arm, rest_pose(plan.arm), p, {}), p);
+  return judged.passive == false ? judged.by : std::string();
+}
+
 void Loop::record(const std::string& file, bool replace) {
   State& s = *state_;
   if (s.recorder) throw LoopError(file + ": " + s.recorder->out().string() + " is being recorded");
-  if (!replace && std::filesystem::exists(file)) {
-    throw LoopError(file + ": exists already, and replace is not set");
+  std::error_code unknown;
+  if (!replace && std::filesystem::exists(file, unknown)) {
+    throw LoopError(file + ": exists already, and `replace` is not set");
   }
   as_recording([&] {
     RunPlan recorded = s.plan;
@@ -375,9 +404,16 @@ std::uint64_t Loop::finish_recording() {
 DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> position)
     : Loop(as_library([&] {
         // A device is no arm that happens to be the default.
-        if (options.motors == Motors::real && options.arm.empty() && options.arm_text.empty()) {
+        const bool real = options.motors != Motors::simulated;
+        if (real && options.arm.empty() && options.arm_text.empty()) {
           throw LoopError(
               "arm: is missing; a device with real motors needs an arm file made for it");
+        }
+        if (real && options.period > kLongestPeriod) {
+          throw LoopError(
+              fmt::format("period: {} s is not allowed with real motors; allowed: at most {} s, "
+                          "because force ends if no reading is fresh for 5 ms",
+                          options.period, kLongestPeriod));
         }
         auto state = std::make_unique<State>(read_plan(options, true), options);
         state->device.emplace(state->plan.arm, state->real);
@@ -390,19 +426,28 @@ DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> posit
 std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   State& s = *state_;
   const auto now = Clock::now();
-  double elapsed = reading.elapsed > 0 ? reading.elapsed : 0;
-  if (elapsed == 0 && s.real && s.ticks > 0) elapsed = seconds_between(s.before, now);
+  const double T = s.plan.parameters.tick;
+  const bool timed = std::isfinite(reading.elapsed) && reading.elapsed >= 0;
+  double elapsed = timed ? reading.elapsed : 0;
+  if (elapsed == 0 && s.real && s.ticks > 0) {
+    elapsed = seconds_between(s.before, now);
+    s.measure(elapsed);
+  }
   s.before = now;
   const std::size_t positions = reading.position.size();
-  const bool whole = positions == s.plan.arm.joints.size();
+  const bool same = s.real && !reading.fresh && s.ticks > 0;
+  const bool whole = same || positions == s.plan.arm.joints.size();
   if (!whole) s.wrong_count = positions + 1;
   const bool finite = std::ranges::all_of(reading.position, finite_number);
-  const bool wrong = !whole || (!finite && !s.real);
+  if (!s.real) {
+    s.refused = !finite ? "a reading is not finite" : timed ? nullptr : "a reading's time is wrong";
+  }
+  const bool wrong = !whole || s.refused != nullptr;
   if (wrong) s.device->stop();
   if (wrong && !s.real) return s.device->torque();  // a simulated device cannot trip
-  const double T = s.plan.parameters.tick;
   const double passed = elapsed > 0 ? elapsed : T;
-  s.device->take(reading.position, reading.fresh, reading.hand, reading.fault, passed);
+  s.device->take(same ? std::span<const double>() : reading.position, reading.fresh, reading.hand,
+                 reading.fault || !timed, passed);
   RigInput input{{s.tip(), 1}, s.force.take()};
   constexpr double kMostPeriods = 1e6;
   input.periods = static_cast<int>(std::clamp(std::round(passed / T), 1.0, kMostPeriods));
@@ -422,6 +467,7 @@ std::string DeviceLoop::force_text() const {
     return fmt::format("force off: a reading has {} positions; needed: {}, one per joint",
                        s.wrong_count - 1, joints());
   }
+  if (s.refused != nullptr) return fmt::format("force off: {}", s.refused);
   const ForceState why = s.rig->force_state();
   std::string text = limpid::force_text(why);
   if (why == ForceState::frozen && force_share() > 0) {
@@ -431,15 +477,26 @@ std::string DeviceLoop::force_text() const {
   if (force_share() < 1) return "force fades in";
   const std::span<const double> row = s.row;
   const auto part = [&](Column column) { return s.layout.in(row, column)[0]; };
-  const double walls = std::min(part(Column::governor), part(Column::torque_governor));
+  std::vector<std::string> all;
   constexpr double kWhole = 0.995;
-  if (walls < kWhole) {
-    text = fmt::format("walls held back to {:.0f} % by the law's energy account", 100 * walls);
+  for (const auto& [held, column] :
+       {std::pair("walls", Column::governor), {"all force", Column::torque_governor}}) {
+    if (part(column) >= kWhole) continue;
+    all.push_back(fmt::format("{} held back to {:.0f} % by the law's energy account", held,
+                              100 * part(column)));
   }
-  const std::string limit = s.at_motor_limit() ? "motors at their limit"
-                            : s.at_tip_limit() ? "motors at the tip's limit"
-                                               : "";
-  return text + (text.empty() || limit.empty() ? "" : "; ") + limit;
+  if (s.at_motor_limit()) {
+    all.emplace_back("motors at their limit");
+  } else if (s.at_tip_limit()) {
+    all.emplace_back("motors at the tip's limit");
+  }
+  const double T = period();
+  constexpr double kOff = 0.2;  // of the period
+  if (s.measured == State::kMeasured && std::abs(s.mean_period - T) > kOff * T) {
+    all.push_back(fmt::format("ticks come every {:.2g} ms, not every {:.2g} ms as `period` says",
+                              1e3 * s.mean_period, 1e3 * T));
+  }
+  return fmt::format("{}", fmt::join(all, "; "));
 }
 
 SimulatedLoop::SimulatedLoop(const LoopOptions& options)
@@ -481,7 +538,8 @@ std::span<const double> SimulatedLoop::step(const Hand& hand) noexcept {
 
 SimulatedLoop::RunEnd SimulatedLoop::run(std::span<const double> path, double duration,
                                          const TakeRow& take) const {
-  return as_library([&]() -> RunEnd {
+  std::exception_ptr thrown;  // by the caller's own function
+  const RunEnd all = as_library([&]() -> RunEnd {
     if (!take) throw LoopError("take: is empty; needed: a function that takes each row");
     if (!(duration >= 0) || !std::isfinite(duration)) {
       throw LoopError(fmt::format("duration: {} is not allowed; allowed: 0 s or more", duration));
@@ -495,13 +553,20 @@ SimulatedLoop::RunEnd SimulatedLoop::run(std::span<const double> path, double du
     const auto end = simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
       watch.add(row);
       state_->in_si(row, si);
-      return take(si);
+      try {
+        return take(si);
+      } catch (...) {
+        thrown = std::current_exception();
+        return false;
+      }
     });
     return {end.rows, end.diverged,
             end.diverged ? fmt::format("unstable since t = {:.3f} s: {}", end.diverged_at, end.why)
                          : std::string(),
             watch.cautions()};
   });
+  if (thrown) std::rethrow_exception(thrown);
+  return all;
 }
 
 std::string library_version() { return program_version(); }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -23,7 +24,8 @@ namespace fs = std::filesystem;
 
 // Returns the file of that name, or the one of that name that came along.
 fs::path file_of(const std::string& name, const char* kind) {
-  if (fs::exists(name)) return name;
+  std::error_code unknown;
+  if (fs::exists(name, unknown)) return name;
   if (const auto own = shipped_file(name, {kind})) return *own;
   throw FileError(name + ": no such file" + shipped_hint(name, {kind}));
 }
@@ -53,9 +55,17 @@ SceneDocument read_scene_of(const LoopOptions& options, const ArmDescription& ar
 
 Parameters chosen(const LoopOptions& options, Parameters base) {
   if (!options.config.empty()) apply_config(base, options.config);
-  for (const std::string& setting : options.settings) apply_setting(base, setting);
+  for (const std::string& setting : options.settings) {
+    setting_named(key_of_setting(setting));
+    apply_setting(base, setting);
+  }
   if (base.tick != Parameters{}.tick && base.tick != options.period) {
     throw FieldError("loop.tick: is set here by the option `period`");
+  }
+  const ParameterInfo& tick = setting_named("loop.tick");
+  if (!(options.period >= tick.minimum && options.period <= tick.maximum)) {
+    throw FieldError(fmt::format("period: {} s is not allowed; allowed: {} to {} s", options.period,
+                                 tick.minimum, tick.maximum));
   }
   set_parameter(base, "loop.tick", options.period);
   return base;
@@ -70,6 +80,13 @@ void refuse_simulated(std::string_view key, bool device) {
   if (whose == nullptr) return;
   throw FieldError(
       fmt::format("{}: belongs to the simulated {}, which a DeviceLoop does not have", key, whose));
+}
+
+// Says the damping [N m s/rad] as slides have it; empty without slides.
+std::string of_slides(const ArmDescription& arm, double damping) {
+  const auto slides = slides_of(arm);
+  if (std::ranges::find(slides, true) == slides.end()) return {};
+  return fmt::format(" (slides: {:.3g} N s/m)", damping / (kSlideUnit * kSlideUnit));
 }
 
 void refuse_fixed(const ParameterInfo& info) {
@@ -94,10 +111,11 @@ LibraryPlan read_plan(const LoopOptions& options, bool device) {
   Parameters fit = fitted(plan.arm, asked);
   if (device && std::isnan(asked.damping)) {
     if (!std::isnan(fit.damping)) {
-      all.notes.push_back(fmt::format(
-          "the arm's joints have no damping: gains are fitted as if they had {:.3g} N m s/rad, and "
-          "the energy account counts no damping; set the real value in device.damping",
-          fit.damping));
+      all.notes.push_back(
+          fmt::format("the arm's joints have no damping: gains are fitted as if they had {:.3g} N "
+                      "m s/rad{}, and "
+                      "the energy account counts no damping; set the real value in device.damping",
+                      fit.damping, of_slides(plan.arm, fit.damping)));
     }
     fit.damping = kFromArm;
   }
@@ -173,8 +191,11 @@ void set_live(Parameters& p, std::string_view key, double value, bool device) {
   refuse_simulated(key, device);
   const ParameterInfo& info = setting_named(key);
   refuse_fixed(info);
-  if (info.kind == FieldInfo::Kind::flag) return set_value(info, p, value != 0);
-  set_value(info, p, value);
+  if (info.kind != FieldInfo::Kind::flag) return set_value(info, p, value);
+  if (value != 0 && value != 1) {
+    throw FieldError(fmt::format("{}: {} is not allowed; allowed: 0 or 1", key, value));
+  }
+  set_value(info, p, value != 0);
 }
 
 }  // namespace limpid

@@ -181,7 +181,7 @@ void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
       read_out("\xCE\xB7", less, {},
                "An added mass that moves fast acts as a damper. If the torque comes late, this "
                "damper would add energy (model.delay_most is the largest delay). If the proxy is "
-               "heavy (proxy.inertia_ratio), an added mass greater than the device's mass would "
+               "heavy (proxy.inertia_ratio), an added mass as great as the device's mass would "
                "make device and proxy swing.");
     }
   }

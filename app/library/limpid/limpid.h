@@ -15,7 +15,9 @@
 //     }
 //
 // Quantities have SI units. Joints that turn have rad, rad/s and N m, joints that slide m, m/s and
-// N. Points are in the frame of the arm's base: x forward, y left, z up.
+// N. Points are in the frame of the arm's base: x forward, y left, z up. A parallel robot (a delta)
+// is an arm of three slides along x, y and z with the mass that the hand feels: give the place of
+// its tip as positions, and turn the forces f into the motors' torques by your Jacobian, J^T f.
 //
 // Threads: arm(), cut() and the free functions may be called from any thread. All else of a loop
 // belongs to the thread that ticks. tick() and step() neither allocate, lock nor throw, and touch
@@ -78,16 +80,16 @@ struct LoopLimits {
 };
 
 struct LoopOptions {
-  // URDF file of the arm, or the name of one that came along, as "omni.urdf". Empty: the built-in
-  // arm of three joints, but not for real motors. Xacro is not expanded here.
+  // URDF file of the arm, or the name of one in share/limpid/assets/devices, as "omni.urdf". Empty:
+  // the built-in arm of three joints, but not for real motors. Xacro is not expanded here.
   std::string arm;
   // URDF of the arm as text, in place of the file; urdf_text() below writes one.
   std::string arm_text;
   // Link of the arm that the hand holds. Empty: the one that the file names, or the end of the
   // longest chain.
   std::string tip;
-  // TOML file of the scene, or the name of one that came along, as "table.toml". Empty: a table
-  // where the arm reaches it, else nothing to touch.
+  // TOML file of the scene, or the name of one in share/limpid/assets/scenes, as "table.toml".
+  // Empty: a table where the arm reaches it, else nothing to touch.
   std::string scene;
   // The scene as text, in place of the file; SceneBuilder below writes one. Models that it names
   // are looked for in the present folder.
@@ -95,13 +97,16 @@ struct LoopOptions {
   // TOML file of settings, as `limpid run --config` takes it. Empty: none.
   std::string config;
   // Settings by their keys, as "coupling.kind=predictive"; later ones win, also over `config`.
-  // setting_list() has all of them. The law is "proposed" unless coupling.kind says another. Gains
-  // that no setting names are fitted to the arm. Of a device say the step of its encoders,
-  // device.encoder_step, and its delay in ticks, model.delay. hand.* and
-  // plant.* are the simulated hand's and arm's; a DeviceLoop refuses them.
+  // setting_list() has all of them. The law is "proposed", the paper's, unless coupling.kind says
+  // another; "predictive" renders stiffer walls, and stays passive with a low eta. Gains that no
+  // setting names are fitted to the arm. Of a device say the step of its encoders,
+  // device.encoder_step, and its delay in ticks, model.delay. hand.* and plant.* are the simulated
+  // hand's and arm's; a DeviceLoop refuses them. In settings, whose units have rad, 1 rad of a
+  // slide is 0.1 m: coupling.k_vc = 1 N m/rad is 100 N/m, device.damping = 1 N m s/rad is 100 N
+  // s/m, a torque of 1 N m is 10 N, and device.encoder_step = 1e-4 rad is 1e-5 m.
   std::vector<std::string> settings;
-  // Time from a tick to the next, 1e-5 to 0.1 s: what your loop keeps. Faster loops render stiffer
-  // walls. Most of what Limpid promises was tried at 0.001.
+  // Time from a tick to the next, 1e-5 to 0.1 s, with real motors at most 0.004 s: what your loop
+  // keeps. Faster loops render stiffer walls. Most of what Limpid promises was tried at 0.001.
   double period = 0.001;
   // The two below are a DeviceLoop's.
   Motors motors = Motors::real;
@@ -112,8 +117,8 @@ struct LoopOptions {
 struct SettingInfo {
   std::string key;                 // "coupling.eta"
   std::string unit;                // "-" for none
-  double least = 0, most = 0;      // allowed; of a flag 0 and 1
-  std::vector<std::string> words;  // of a choice, else empty
+  double least = 0, most = 0;      // allowed numbers; of a flag 0 and 1
+  std::vector<std::string> words;  // in a text, of a choice or a flag; else empty
   bool live = true;                // may change while the loop runs
   std::string meaning;             // a sentence for people
 };
@@ -145,7 +150,8 @@ struct ArmModel {
   std::vector<ArmJoint> joints;  // 1 to 32, base first
   Point3 tip{};                  // in the last joint's frame [m]
 };
-// Returns the arm as URDF, for LoopOptions::arm_text or a file. Errors: an effort of 0 or less.
+// Returns the arm as URDF, for LoopOptions::arm_text or a file. Errors: a number that is not
+// finite, but for a guessed effort; an effort of 0 or less.
 LIMPID_API std::string urdf_text(const ArmModel& arm);
 
 // Surface of an object. Stiffness up to 1e6, damping up to 1000, friction 0 to 1.
@@ -191,12 +197,14 @@ struct RowColumn {
 // While there is no force, the proxy follows the device, and E_c counts what the hand stores in its
 // walls.
 struct LoopEnergy {
-  // E_c: given by the coupling, with the device's own damping. A passive one's is 0 at most.
+  // E_c: given by the coupling, with the device's own damping. A passive one's is 0 at most as long
+  // as all force is on. Force that is off, fades or is held back raises it, because walls then
+  // store what no motor took from the hand: `port` and `reserve` say what the hand was given.
   double controller = 0;
   double commanded = 0;  // Part of E_c by motors and proxy.
   double port = 0;       // Given to the human by motors and own damping.
-  // Left to give, by the law's account; 0 without an account. Below 0 there is a debt, and the law
-  // holds walls back until the device has given energy again.
+  // Left to give, by the law's account; 0 without an account. Near 0 and below, where there is a
+  // debt, the law holds walls back until the device has given energy again.
   double reserve = 0;
 };
 
@@ -210,6 +218,9 @@ class LIMPID_API Loop {
   double period() const;  // T [s]
   // Sentences on what was mended, guessed, fitted or left out of arm, scene and models.
   const std::vector<std::string>& notes() const;
+  // Says why the law with its present settings is not passive, as "eta is below eta_min 0.5204,
+  // equation (25)"; empty if it is, or if no theory is known.
+  std::string not_passive_text() const;
 
   // Settings. Errors: no such key; a value that is not allowed; a key that is fixed once the loop
   // is made (SettingInfo::live).
@@ -228,17 +239,19 @@ class LIMPID_API Loop {
   // what it returns.
   const std::vector<RowColumn>& derived_columns() const;
   std::array<double, 15> derived(std::span<const double> row) const noexcept;
-  double time() const noexcept;       // t_k since start or recording began [s]; 0 before a tick
-  Point3 tip() const noexcept;        // of the device, after the tick [m]
+  Point3 contact_force() const noexcept;  // sum of all contacts on the proxy in the last tick [N]
+  double time() const noexcept;           // t_k since start or recording began [s]; 0 before a tick
+  Point3 tip() const noexcept;            // of the device, after the tick [m]
   Point3 proxy_tip() const noexcept;  // of the proxy, and of the device before the first tick [m]
   LoopEnergy energy() const noexcept;
   // True once the loop was unstable: force is off, and stays off.
   bool diverged() const noexcept;
 
-  // Records every row from the coming tick on; where force fades in, from its end on. A thread of
-  // its own writes. With simulated motors a tick waits where the disk is slower; with real ones
-  // rows that find no room are lost, and counted. Errors: the file exists and not `replace`; it
-  // cannot be written.
+  // Records every row from the coming tick on into a session, an HDF5 file (.h5). While force fades
+  // in, recording waits for the end of the fade: what begins and ends within it has no rows. A
+  // thread of its own writes. With simulated motors a tick waits where the disk is slower; with
+  // real ones rows that find no room are lost, and counted. Errors: the file exists and not
+  // `replace`; it cannot be written.
   void record(const std::string& file, bool replace = false);
   // Ends the recording and returns the number of lost rows. Without it FILE.part is left, which
   // `limpid recover` mends. Errors: a write failed; nothing was being recorded.
@@ -257,7 +270,8 @@ class LIMPID_API Loop {
 class LIMPID_API DeviceLoop : public Loop {
  public:
   // With simulated motors `fresh`, `hand` and `fault` are not looked at; a reading that is not
-  // finite, or of another number of joints, gives no torque and leaves the loop as it is.
+  // finite, or of another number of joints, gives no torque and leaves the loop as it is. Positions
+  // of a reading that is not fresh are not looked at after the first, and may be empty.
   struct Reading {
     std::span<const double> position;  // of each joint, now
     // False: the same reading as at the last tick. Force ends where none is fresh for 5 ms.
@@ -265,7 +279,8 @@ class LIMPID_API DeviceLoop : public Loop {
     bool hand = true;    // False: the dead-man switch is open; force waits.
     bool fault = false;  // True: the device is not well; force trips until it is armed again.
     // Time since the last tick [s]. 0: measured by the library with real motors, one period with
-    // simulated ones. More than 5 ms is a stall, after which force fades in anew.
+    // simulated ones. More than 5 ms is a stall, after which force fades in anew. A loop that gives
+    // its own time has to measure it, or its stalls are not seen. Not finite or below 0: a fault.
     double elapsed = 0;
   };
 
@@ -284,16 +299,16 @@ class LIMPID_API DeviceLoop : public Loop {
   // 5 to 20 ms.
   std::span<const double> tick(const Reading& reading) noexcept;
 
-  // Ask for force, and end it; heard at the next tick. Whoever calls arm() answers for a person who
-  // holds the device.
+  // Ask for force, and end it; heard at the next tick. A cut wins over every arm() before that
+  // tick. Whoever calls arm() answers for a person who holds the device.
   void arm() noexcept;
   void cut() noexcept;
-  bool armed() const noexcept;          // asked for, and not cut since; also after a trip
+  bool armed() const noexcept;  // asked for, and not cut since, as heard so far; also after a trip
   double force_share() const noexcept;  // part of the torque that leaves, 0 to 1
   // Why there is no force, or less; empty while all of it is on. "held back" returns by itself, and
   // so does "off" by an open hand switch; "off" by anything else returns after arm(). Of force that
-  // is on it also says that it fades in, that the law's account holds walls back, and that a motor
-  // gives all it can.
+  // is on it also says that it fades in, that the law's account holds walls or all force back, that
+  // a motor gives all it can, and that ticks come faster or slower than `period` says.
   std::string force_text() const;
 };
 
@@ -330,7 +345,7 @@ class LIMPID_API SimulatedLoop : public Loop {
   // run`, bit for bit. `path` has rows of time [s], x, y, z [m], at least two, of increasing time,
   // of which the first counts as 0; between them a monotone cubic leads. `duration` [s]; 0: the
   // path's. The loop itself stays as it is, so that threads may run one loop at once. Errors:
-  // LoopError.
+  // LoopError, and whatever `take` throws.
   RunEnd run(std::span<const double> path, double duration, const TakeRow& take) const;
 };
 

@@ -134,6 +134,7 @@ void declare_loops(py::module_& module) {
       .def_property_readonly("joints", &Loop::joints)
       .def_property_readonly("period", &Loop::period)
       .def_property_readonly("notes", &Loop::notes)
+      .def_property_readonly("not_passive", &Loop::not_passive_text)
       .def_property_readonly("diverged", &Loop::diverged)
       .def_property_readonly("time", &Loop::time)
       .def_property_readonly("tip", &Loop::tip)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib.machinery
 import importlib.util
+import math
 import os
 import sys
 import warnings
@@ -127,9 +128,20 @@ class _AnyLoop:
         return list(self._loop.notes)
 
     @property
+    def not_passive(self) -> str:
+        """Why the law with its present settings is not passive; empty if it is, or if no theory is known."""
+        return str(self._loop.not_passive)
+
+    @property
     def diverged(self) -> bool:
         """Whether the loop was unstable: its force is off, and stays off."""
         return bool(self._loop.diverged)
+
+    def __copy__(self) -> Any:
+        raise ArgumentError("a loop cannot be copied; make another one")
+
+    def __deepcopy__(self, memo: Any) -> Any:
+        return self.__copy__()
 
     @property
     def tip(self) -> Tuple[float, float, float]:
@@ -167,7 +179,10 @@ class _AnyLoop:
     def record(self, file: PathLike, force: bool = False) -> None:
         """Records every row from the next tick on into a session, in place of one that is there with
         `force`."""
-        self._loop.record(path_of("record", file), force)
+        try:
+            self._loop.record(path_of("record", file), force)
+        except LimpidError as error:
+            raise type(error)(str(error).replace("`replace`", "`force`")) from None
 
     def finish_recording(self) -> int:
         """Ends the recording; returns the number of rows that found no room."""
@@ -261,6 +276,8 @@ class DeviceLoop(_AnyLoop):
             raise ArgumentError(f'motors: {motors!r} is not allowed; allowed: "real", "simulated"')
         options.motors = getattr(_module().Motors, motors)
         allowed = options.limits
+        if not isinstance(limits, (Mapping, type(None))):
+            raise ArgumentError(f"limits: {limits!s:.40} is not allowed; allowed: a dict of names and numbers")
         for name, value in (limits or {}).items():
             if not hasattr(allowed, name):
                 raise ArgumentError(f"limits: {name} is none; there are joint_speed, tip_speed, tip_force, "
@@ -274,7 +291,9 @@ class DeviceLoop(_AnyLoop):
         """Runs the tick on a reading of each joint; returns the torques to be held until the next
         one. `fresh`: not the same reading as at the last tick. `hand`: the dead-man switch is closed.
         `fault`: the device is not well. `elapsed`: time since the last tick [s]; 0: measured here."""
-        seconds = elapsed if type(elapsed) in (int, float) else number("elapsed", elapsed)
+        seconds = elapsed if type(elapsed) in (int, float) and 0 <= elapsed < math.inf else number("elapsed", elapsed)
+        if seconds < 0:
+            raise ArgumentError(f"elapsed: {seconds:g} is not allowed; allowed: 0 s or more")
         try:
             count = len(position)
             if count == self.joints:

@@ -196,7 +196,7 @@ TEST_F(Commands, RunHasVariationsOfPathsAlone) {
   EXPECT_NE(hand({"--variation", "1", "--seed", "2"}), first);
   EXPECT_EQ(hand({"--variation", "0"}), hand({}));
   EXPECT_THAT(refused({"run", "--hand", "cup.h5", "--variation", "1"}),
-              HasSubstr("cup.h5 is more than a path"));
+              HasSubstr("cup.h5 contains more than a path"));
 }
 
 TEST_F(Commands, RunOnADeviceHasNoOtherHand) {

@@ -51,9 +51,10 @@ class Results : public test::Program {
 TEST_F(Results, OfAnExperimentReplaceNoForeignFile) {
   const std::vector<std::string> words{"experiment", "inertia", "--out", "o"};
   for (const std::string file : {"o/inertia.csv", "o/report.html"}) {
-    EXPECT_THAT(refused_for(file, words),
-                AllOf(HasSubstr("--out o: nothing says that " + fs::path(file).filename().string()),
-                      HasSubstr("was written by limpid experiment; "), HasSubstr("--force")));
+    EXPECT_THAT(
+        refused_for(file, words),
+        AllOf(HasSubstr("--out o: no mark shows that " + fs::path(file).filename().string()),
+              HasSubstr("was written by limpid experiment; "), HasSubstr("--force")));
     fs::remove(file);
   }
   write("o/notes.txt", "mine");
@@ -65,7 +66,7 @@ TEST_F(Results, OfAnExperimentReplaceNoForeignFile) {
               HasSubstr("passivity.csv"))
       << "another experiment of the same folder";
   EXPECT_THAT(refused_for("q/limpid.txt", {"experiment", "inertia", "--out", "q"}),
-              HasSubstr("limpid.txt is not Limpid's"));
+              HasSubstr("limpid.txt was not written by Limpid"));
   fs::create_directory("p");
   write("p/inertia.csv", "mine");
   done({"experiment", "inertia", "--out", "p", "--force"});

@@ -121,7 +121,7 @@ TEST_F(Usage, HasEveryOptionBehindItsCommand) {
               HasSubstr("--scene: stands before the command; write limpid run --scene ..."));
   EXPECT_THAT(refused({"--ui-scale", "1", "run"}),
               HasSubstr("--ui-scale: is an option of the window, and limpid run opens no window"));
-  EXPECT_THAT(refused({"table.toml", "run"}), HasSubstr("not expected before run"));
+  EXPECT_THAT(refused({"table.toml", "run"}), HasSubstr("must not stand before the command run"));
   EXPECT_THAT(refused({"table.toml", "play", "table.h5"}),
               HasSubstr("stands before the command play"));
 }
@@ -231,7 +231,7 @@ TEST_F(Usage, IsInManualPages) {
   EXPECT_THAT(run, HasSubstr(".TH LIMPID\\-RUN 1 "));
   EXPECT_THAT(run, HasSubstr("\\fBlimpid run\\fR [\\fIOPTION\\fR]...\n"));
   EXPECT_THAT(run, HasSubstr(".TP\n\\fB\\-\\-record\\fR \\fIOUT.h5\\fR\nwrite every tick"));
-  EXPECT_THAT(run, HasSubstr(".SH NOTES\n.nf\nFILE.csv holds"));
+  EXPECT_THAT(run, HasSubstr(".SH NOTES\n.nf\nFILE.csv has"));
   const std::string check = test::text_of("made/man/man1/limpid-check.1");
   EXPECT_THAT(check, HasSubstr("[\\fIOPTION\\fR]... \\fIFILE\\fR\n")) << "it is required";
   const std::string story = test::text_of("made/man/man1/limpid-story.1");

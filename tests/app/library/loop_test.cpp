@@ -12,15 +12,17 @@
 #include "devices/files/session/session_units.h"
 #include "devices/files/urdf_file.h"
 #include "devices/simulated/rig.h"
+#include "tests/app/library/slide.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_session.h"
 
 namespace limpid {
 namespace {
 
+using test::rest;
+using test::slide;
+using test::slide_at_wall;
 using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 // A device that gives readings as they are written down, and remembers its torque.
 class Written final : public Device {
@@ -159,35 +161,6 @@ TEST(SimulatedLoop, WarnsOfARunThatGivesEnergyOrMovesAsNoHandDoes) {
   const auto end = loop.run(path, 0, [](std::span<const double>) { return true; });
   ASSERT_FALSE(end.warnings.empty());
   EXPECT_NE(end.warnings[0].find("not passive"), std::string::npos) << end.warnings[0];
-}
-
-// A slide along x [N, N s/m, kg], with a wall from x = 0 on [N/m].
-LoopOptions slide_at_wall(double effort, double damping, double mass, double stiffness) {
-  ArmModel arm;
-  ArmJoint joint;
-  joint.name = "slide";
-  joint.slides = true;
-  joint.axis = {1, 0, 0};
-  joint.lower = -0.2;
-  joint.upper = 0.2;
-  joint.effort = effort;
-  joint.damping = damping;
-  joint.mass = mass;
-  arm.joints = {joint};
-  LoopOptions options;
-  options.arm_text = urdf_text(arm);
-  SceneBuilder scene;
-  SurfaceMaterial wall;
-  wall.stiffness = stiffness;
-  options.scene_text = scene.plane("wall", {0, 0, 0}, {-1, 0, 0}, wall).text();
-  return options;
-}
-
-LoopOptions slide() {
-  LoopOptions options = slide_at_wall(8, 0.5, 0.1, 500);
-  options.settings = {"coupling.kind=direct"};
-  options.motors = Motors::simulated;
-  return options;
 }
 
 TEST(SimulatedLoop, DerivesTipsAndTheTotalForceFromARow) {
@@ -348,22 +321,6 @@ TEST(DeviceLoop, TakesMetresAndGivesNewtonsOfASlide) {
   EXPECT_NEAR(loop.tip()[0], 0.004, 1e-15);
 }
 
-// Ticks a loop at rest for so many seconds; returns the last torque of its first joint.
-double rest(DeviceLoop& loop, std::span<const double> x, double seconds) {
-  DeviceLoop::Reading reading;
-  reading.position = x;
-  reading.elapsed = 1e-3;
-  double torque = 0;
-  for (int k = 0; k < std::lround(1e3 * seconds); ++k) {
-    // Somebody's hand is never quite still.
-    std::vector<double> trembling(x.begin(), x.end());
-    trembling[0] += k % 2 * 1e-6;
-    reading.position = trembling;
-    torque = loop.tick(reading)[0];
-  }
-  return torque;
-}
-
 TEST(DeviceLoop, MovesRealMotorsOnlyWhenArmedAndFadesIn) {
   LoopOptions options = slide();
   options.motors = Motors::real;
@@ -403,17 +360,6 @@ TEST(DeviceLoop, SaysThatAMotorGivesAllItCan) {
   for (; x[0] < 0.02; x[0] += 1e-5) rest(loop, x, 1e-3);
   EXPECT_NEAR(rest(loop, x, 0.5), -8, 1e-9);
   EXPECT_EQ(loop.force_text(), "motors at their limit");
-}
-
-// Arms a loop at a wall, until its force is on.
-DeviceLoop armed() {
-  LoopOptions options = slide();
-  options.motors = Motors::real;
-  const std::array<double, 1> x{0.004};
-  DeviceLoop loop(options, x);
-  loop.arm();
-  EXPECT_LT(rest(loop, x, 1), -1);
-  return loop;
 }
 
 // Real motors of so much effort [N], an arm of so much damping [N s/m].
@@ -548,83 +494,6 @@ TEST(DeviceLoop, KeepsEnergyBoundedWhereTicksAreLate) {
   }
 }
 
-TEST(DeviceLoop, TripsOnReadingsThatCannotBe) {
-  const std::array<double, 1> x{0.004};
-  for (const double wrong : {1e6, std::nan(""), 0.15}) {  // 15 cm within a tick, within the range
-    SCOPED_TRACE(wrong);
-    DeviceLoop loop = armed();
-    const std::array<double, 1> there{wrong};
-    DeviceLoop::Reading reading;
-    reading.position = there;
-    reading.elapsed = 1e-3;
-    EXPECT_EQ(loop.tick(reading)[0], 0);
-    EXPECT_EQ(rest(loop, x, 1), 0) << "it does not come back by itself";
-    EXPECT_NE(loop.force_text(), "");
-    loop.arm();
-    EXPECT_LT(rest(loop, x, 1), -1);
-  }
-}
-
-TEST(DeviceLoop, SaysThatForceFadesWhereReadingsStandStill) {
-  DeviceLoop loop = armed();
-  const std::array<double, 1> x{0.004};
-  DeviceLoop::Reading reading;
-  reading.position = x;
-  reading.elapsed = 1e-3;
-  for (int k = 0; k < 450; ++k) loop.tick(reading);
-  EXPECT_GT(loop.force_share(), 0);
-  EXPECT_LT(loop.force_share(), 1);
-  EXPECT_THAT(loop.force_text(), StartsWith("force held back: "));
-  for (int k = 0; k < 300; ++k) loop.tick(reading);
-  EXPECT_EQ(loop.force_share(), 0);
-  EXPECT_THAT(loop.force_text(), StartsWith("force off: "));
-}
-
-TEST(DeviceLoop, EndsForceWithoutFreshReadingsHandOrHealth) {
-  const std::array<double, 1> x{0.004};
-  const auto after = [&](auto change) {
-    DeviceLoop loop = armed();
-    DeviceLoop::Reading reading;
-    reading.position = x;
-    reading.elapsed = 1e-3;
-    change(reading);
-    double torque = 0;
-    for (int k = 0; k < 7; ++k) torque = loop.tick(reading)[0];
-    return std::pair(torque, loop.force_text());
-  };
-  EXPECT_EQ(after([](auto& r) { r.fresh = false; }).first, 0) << "7 ms old";
-  EXPECT_EQ(after([](auto& r) { r.hand = false; }).first, 0);
-  EXPECT_EQ(after([](auto& r) { r.fault = true; }).first, 0);
-  const auto [torque, why] = after([](auto& r) { r.position = {}; });
-  EXPECT_EQ(torque, 0);
-  EXPECT_NE(why, "");
-  // A stall: 7 ticks of a fade of 0.5 s later there is at most a hundredth.
-  EXPECT_NEAR(after([](auto& r) { r.elapsed = 0.006; }).first, 0, 0.02);
-}
-
-TEST(DeviceLoop, SaysThatAReadingHasAnotherNumberOfJoints) {
-  for (const Motors motors : {Motors::real, Motors::simulated}) {
-    LoopOptions options = slide();
-    options.motors = motors;
-    DeviceLoop loop(options, std::array{0.004});
-    DeviceLoop::Reading reading;
-    const std::array<double, 1> one{0.004};
-    loop.arm();
-    rest(loop, one, 1);
-    const std::array<double, 2> two{0.004, 0};
-    reading.position = two;
-    EXPECT_EQ(loop.tick(reading)[0], 0);
-    EXPECT_THAT(loop.force_text(), HasSubstr("a reading has 2 positions; needed: 1"));
-    rest(loop, one, 0.01);
-    if (motors == Motors::real) {
-      EXPECT_THAT(loop.force_text(), HasSubstr("a reading has 2 positions")) << "why it tripped";
-      loop.arm();
-      rest(loop, one, 1);
-    }
-    EXPECT_EQ(loop.force_text(), "");
-  }
-}
-
 // Energy that nobody knows to be lost is not lent to the law.
 TEST(DeviceLoop, MakesUpNoDamping) {
   LoopOptions options = slide();
@@ -635,32 +504,6 @@ TEST(DeviceLoop, MakesUpNoDamping) {
   EXPECT_THAT(loop.notes(), testing::Contains(HasSubstr("have no damping")));
   const SimulatedLoop simulated(options);
   EXPECT_GT(simulated.get("device.damping"), 0);
-}
-
-TEST(DeviceLoop, SaysAStartOutsideOfTheRangeAndRefusesOneFarOutside) {
-  // The slide goes from -0.2 to 0.2 m.
-  const DeviceLoop near(slide(), std::array{0.21});
-  EXPECT_THAT(near.notes(), testing::Contains(HasSubstr("joint 1 begins at 0.21")));
-  const DeviceLoop inside(slide(), std::array{0.19});
-  EXPECT_THAT(inside.notes(), testing::Not(testing::Contains(HasSubstr("begins at"))));
-  try {
-    const DeviceLoop far(slide(), std::array{-0.25});
-    FAIL();
-  } catch (const LoopError& error) {
-    EXPECT_STREQ(error.what(),
-                 "position: joint 1 has -0.25; needed: -0.2 to 0.2 m, the arm's range");
-  }
-}
-
-TEST(DeviceLoop, RefusesSettingsOfTheSimulatedHandAndArm) {
-  LoopOptions options = slide();
-  options.settings.emplace_back("hand.stiffness=300");
-  EXPECT_THROW(DeviceLoop(options, std::array{0.0}), LoopError);
-  EXPECT_NO_THROW(SimulatedLoop{options});
-  DeviceLoop loop(slide(), std::array{0.0});
-  EXPECT_THROW(loop.set("hand.damping=5"), LoopError);
-  EXPECT_THROW(loop.set("hand.damping", 5), LoopError);
-  EXPECT_THROW(loop.set("plant.cogging=0.01"), LoopError);
 }
 
 // A spring of the wall's k and the coupling's k_vc in a row: the proxy is where both hold as much.
@@ -705,77 +548,6 @@ TEST(DeviceLoop, RecordsWhatItsRowsWere) {
   EXPECT_EQ(session.changes[0].setting, "coupling.eta = 0.5");
   EXPECT_THROW(loop.record(file), LoopError) << "it is there";
   EXPECT_THROW(loop.finish_recording(), LoopError);
-}
-
-std::string refusal(const std::function<void()>& of) {
-  try {
-    of();
-  } catch (const LoopError& e) {
-    return e.what();
-  }
-  return "nothing";
-}
-
-TEST(Loops, SayWhatIsNotAllowed) {
-  const auto making = [](auto change) {
-    LoopOptions options = slide();
-    change(options);
-    return refusal([&] { DeviceLoop(options, std::array{0.0}); });
-  };
-  EXPECT_THAT(making([](auto& o) { o.settings = {"coupling.etta=1"}; }),
-              HasSubstr("coupling.etta"));
-  EXPECT_THAT(making([](auto& o) { o.settings = {"coupling.eta=-1"}; }), HasSubstr("allowed"));
-  EXPECT_THAT(making([](auto& o) { o.limits.tip_force = 11; }),
-              AllOf(HasSubstr("tip_force: 11"), HasSubstr("0.1 to 10 N")));
-  EXPECT_THAT(making([](auto& o) { o.period = 1; }), HasSubstr("loop.tick: 1"));
-  EXPECT_THAT(making([](auto& o) { o.settings = {"loop.tick=0.002"}; }), HasSubstr("period"));
-  EXPECT_THAT(making([](auto& o) { o.scene_text += "[[ball]]\n"; }), HasSubstr("scene_text:"));
-  EXPECT_THAT(making([](auto& o) { o.scene = "table.toml"; }), HasSubstr("both given"));
-  EXPECT_THAT(making([](auto& o) {
-                o.scene_text = "";
-                o.scene = "tabel.toml";
-              }),
-              HasSubstr("did you mean table.toml"));
-  EXPECT_THAT(making([](auto& o) { o.arm_text = "<robot/>"; }), HasSubstr("arm_text"));
-  EXPECT_THAT(refusal([] { DeviceLoop(slide(), std::array{0.0, 0.0}); }), HasSubstr("needed: 1"));
-  EXPECT_THAT(refusal([] { DeviceLoop(slide(), std::array{std::nan("")}); }), HasSubstr("finite"));
-
-  EXPECT_THAT(refusal([] {
-                DeviceLoop(LoopOptions{}, std::array{0.0, 0.6, -1.1});
-              }),
-              HasSubstr("arm: is missing"))
-      << "real motors are nobody's default arm";
-
-  DeviceLoop loop(slide(), std::array{0.0});
-  EXPECT_THAT(refusal([&] { loop.set("loop.tick", 0.002); }), HasSubstr("cannot change"));
-  EXPECT_THAT(refusal([&] { loop.set("loop.tick=0.002"); }), HasSubstr("cannot change"));
-  EXPECT_THAT(refusal([&] { loop.set("coupling.eta", 1e9); }), HasSubstr("allowed"));
-  EXPECT_THAT(refusal([&] { (void)loop.row("/device/positon"); }),
-              HasSubstr("no such column; did you mean /device/position?"));
-  loop.set("coupling.kind=standard");
-  EXPECT_EQ(loop.get("coupling.kind"), 0);
-}
-
-TEST(Loops, TakeAllSettingsOrNone) {
-  DeviceLoop loop(slide(), std::array{0.0});
-  const double before = loop.get("coupling.k_vc");
-  const std::vector<std::string> wrong{"coupling.k_vc=0.25", "coupling.eta=-1"};
-  EXPECT_THAT(refusal([&] { loop.set(wrong); }), HasSubstr("coupling.eta"));
-  EXPECT_EQ(loop.get("coupling.k_vc"), before);
-  const std::vector<std::string> right{"coupling.k_vc=0.25", "coupling.eta=0.75"};
-  loop.set(right);
-  EXPECT_EQ(loop.get("coupling.k_vc"), 0.25);
-  EXPECT_EQ(loop.get("coupling.eta"), 0.75);
-}
-
-TEST(Loops, RefuseToRecordInTheWordsOfTheLibrary) {
-  const test::TempDir dir;
-  const auto file = dir / "left.h5";
-  std::ofstream(dir / "left.h5.part") << "of a program that ended";
-  DeviceLoop loop(slide(), std::array{0.0});
-  const std::string said = refusal([&] { loop.record(file.string()); });
-  EXPECT_THAT(said, HasSubstr("limpid recover"));
-  EXPECT_THAT(said, AllOf(HasSubstr("`replace` overwrites"), Not(HasSubstr("--force"))));
 }
 
 TEST(SimulatedLoop, MovesABallThatWasBuilt) {

@@ -133,7 +133,7 @@ TEST(Summary, OfALoopThatBecameUnstableIsOfWhatItDidBefore) {
   summary.add(wild(0.003, 1e9));
   const std::string text = summary.text();
   EXPECT_THAT(text, HasSubstr("ticks                    4\n"));
-  EXPECT_THAT(text, HasSubstr("unstable                 since t = 0.002 s: the distance of"));
+  EXPECT_THAT(text, HasSubstr("unstable                 since t = 0.002 s: the distance between"));
   EXPECT_THAT(text, HasSubstr("largest |x_E|            2.000 mrad\n"));
   EXPECT_THAT(text, HasSubstr("largest |f2|             0.4000 N m\n"));
   EXPECT_THAT(text, HasSubstr("in contact               50 %\n"));

@@ -260,7 +260,7 @@ std::string complaint_of_joystick(PidDevice& device) {
 TEST(PidJoystick, SaysWhenThereIsNoRoomForAnEffect) {
   PidDevice device;
   device.load_status = 2;
-  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("no room"));
+  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("no memory left"));
   EXPECT_THAT(device.received, testing::Not(testing::Contains(kEnable)));
 }
 

@@ -112,7 +112,7 @@ TEST(GltfModel, RefusesReferencesToNothing) {
 }
 
 TEST(GltfModel, RefusesNodesInACircle) {
-  expect_refusal(glb(triangle_json(R"("children":[0])"), triangle_data()), "circle");
+  expect_refusal(glb(triangle_json(R"("children":[0])"), triangle_data()), "its own parent");
 }
 
 TEST(GltfModel, RefusesPositionsThatAreNotFinite) {

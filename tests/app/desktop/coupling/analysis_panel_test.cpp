@@ -77,7 +77,7 @@ TEST_F(AnalysisWords, MarkASceneThatIsTooStiffForTheLaw) {
   set_wall(std::ceil(1.1 * most));
   draw();
   EXPECT_TRUE(broken("stiffest in this scene"));
-  EXPECT_THAT(hint("stiffest in this scene"), HasSubstr("Too stiff: proposed renders"));
+  EXPECT_THAT(hint("stiffest in this scene"), HasSubstr("the coupling proposed renders"));
   p_.kind = CouplingKind::tank;
   draw();
   EXPECT_FALSE(broken("stiffest in this scene")) << "felt through a spring, whatever it is";
@@ -88,7 +88,7 @@ TEST_F(AnalysisWords, SayTheLimitsOfEta) {
   draw();
   const Analysis a = analyze(arm_, pose_, p_, 2 * std::numbers::pi * 7);
   EXPECT_EQ(value("?_min, all frequencies"), fmt::format("{:.3f}", a.eta_min));
-  EXPECT_EQ(value("?_min, this band"), fmt::format("{:.3f}", a.eta_min_band.value()));
+  EXPECT_EQ(value("?_min in the band"), fmt::format("{:.3f}", a.eta_min_band.value()));
   EXPECT_EQ(value("?_min in this grip"), fmt::format("{:.3f}", a.eta_min_grip));
   p_.eta = 1.01 * a.eta_min;
   draw();

@@ -88,7 +88,7 @@ TEST_F(Dialog, OfPresetsTakesANameByEnterAndKeepsWhatCameAlong) {
 TEST_F(Dialog, OfLayoutsSetsPanelsAndPlots) {
   run("plots.layouts");
   frames(3);
-  EXPECT_THAT(words("Layouts"), HasSubstr("which plots and panels the window shows."));
+  EXPECT_THAT(words("Layouts"), HasSubstr("says which plots and panels the window"));
   click("Frequencies", "Layouts");
   click("Use", "Layouts");
   frames(3);
@@ -462,7 +462,7 @@ TEST_F(Dialog, OfExperimentsListsThemAndRunsOne) {
   run("experiments.show");
   frames(4);
   const std::string shown = words();
-  EXPECT_THAT(shown, HasSubstr("Each experiment runs in the ordinary loop"));
+  EXPECT_THAT(shown, HasSubstr("Each experiment runs in the"));
   EXPECT_THAT(shown, HasSubstr("Run all"));
   for (const Experiment& each : experiments()) {
     EXPECT_TRUE(noted_place("Experiments", each.name)) << each.name;

@@ -132,7 +132,7 @@ TEST_F(SignsOverThePicture, TellNoticesAtTheFootWhereATipIsAtTheTop) {
   const float middle = (view_.min.y + view_.max.y) / 2;
   for (const auto& [crowd, low] : {std::pair(Crowd{}, false), {Crowd{{tip}, {}}, true}}) {
     show([&] { signs.draw(notices, view_, signs_, crowd); });
-    const auto said = find("Started over");
+    const auto said = find("Started over, at rest.");
     ASSERT_TRUE(said);
     EXPECT_EQ(said->min.y > middle, low);
     expect_in_view({said->min, said->max});

@@ -74,7 +74,7 @@ TEST(SessionWithBodies, SaysWhatWasPulled) {
   };
   EXPECT_EQ(hand(2, 0.3), 1);
   EXPECT_THAT(refusal([&] { hand(65, 0.3); }),
-              AllOf(HasSubstr("a.h5: /hand/pull: row 7: 65"), HasSubstr("0 to 64")));
+              AllOf(HasSubstr("a.h5: /hand/pull: row 7: 65"), HasSubstr("up to 64")));
   EXPECT_THAT(refusal([&] { hand(1, 11); }),
               AllOf(HasSubstr("/hand/pull_target: row 7: 11"), HasSubstr("-10 to 10 m")));
 }

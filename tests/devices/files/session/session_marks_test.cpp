@@ -169,7 +169,7 @@ TEST(Marks, OfRowsThatAreNotThereAnyMoreAreRefused) {
   const std::string before = test::file_bytes(dir / "a.h5");
   const std::vector<Mark> behind{{10, "was there"}};
   EXPECT_THAT(refusal([&] { write_marks(dir / "a.h5", behind, {}); }),
-              testing::AllOf(HasSubstr("10 rows"), HasSubstr("no row 10")));
+              testing::AllOf(HasSubstr("10 rows"), HasSubstr("row 10 cannot be marked")));
   EXPECT_EQ(test::file_bytes(dir / "a.h5"), before);
 }
 

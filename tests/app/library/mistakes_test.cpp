@@ -1,0 +1,306 @@
+// What callers of the library do wrong: readings, settings and files that cannot be.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+
+#include "tests/app/library/slide.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+using test::armed;
+using test::refusal;
+using test::rest;
+using test::slide;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+TEST(DeviceLoop, TripsOnReadingsThatCannotBe) {
+  const std::array<double, 1> x{0.004};
+  for (const double wrong : {1e6, std::nan(""), 0.15}) {  // 15 cm within a tick, within the range
+    SCOPED_TRACE(wrong);
+    DeviceLoop loop = armed();
+    const std::array<double, 1> there{wrong};
+    DeviceLoop::Reading reading;
+    reading.position = there;
+    reading.elapsed = 1e-3;
+    EXPECT_EQ(loop.tick(reading)[0], 0);
+    EXPECT_EQ(rest(loop, x, 1), 0) << "it does not come back by itself";
+    EXPECT_NE(loop.force_text(), "");
+    loop.arm();
+    EXPECT_LT(rest(loop, x, 1), -1);
+  }
+}
+
+TEST(DeviceLoop, SaysThatForceFadesWhereReadingsStandStill) {
+  DeviceLoop loop = armed();
+  const std::array<double, 1> x{0.004};
+  DeviceLoop::Reading reading;
+  reading.position = x;
+  reading.elapsed = 1e-3;
+  for (int k = 0; k < 450; ++k) loop.tick(reading);
+  EXPECT_GT(loop.force_share(), 0);
+  EXPECT_LT(loop.force_share(), 1);
+  EXPECT_THAT(loop.force_text(), StartsWith("force held back: "));
+  for (int k = 0; k < 300; ++k) loop.tick(reading);
+  EXPECT_EQ(loop.force_share(), 0);
+  EXPECT_THAT(loop.force_text(), StartsWith("force off: "));
+}
+
+TEST(DeviceLoop, EndsForceWithoutFreshReadingsHandOrHealth) {
+  const std::array<double, 1> x{0.004};
+  const auto after = [&](auto change) {
+    DeviceLoop loop = armed();
+    DeviceLoop::Reading reading;
+    reading.position = x;
+    reading.elapsed = 1e-3;
+    change(reading);
+    double torque = 0;
+    for (int k = 0; k < 7; ++k) torque = loop.tick(reading)[0];
+    return std::pair(torque, loop.force_text());
+  };
+  EXPECT_EQ(after([](auto& r) { r.fresh = false; }).first, 0) << "7 ms old";
+  EXPECT_EQ(after([](auto& r) { r.hand = false; }).first, 0);
+  EXPECT_EQ(after([](auto& r) { r.fault = true; }).first, 0);
+  const auto [torque, why] = after([](auto& r) { r.position = {}; });
+  EXPECT_EQ(torque, 0);
+  EXPECT_NE(why, "");
+  // A stall: 7 ticks of a fade of 0.5 s later there is at most a hundredth.
+  EXPECT_NEAR(after([](auto& r) { r.elapsed = 0.006; }).first, 0, 0.02);
+}
+
+TEST(DeviceLoop, SaysThatAReadingHasAnotherNumberOfJoints) {
+  for (const Motors motors : {Motors::real, Motors::simulated}) {
+    LoopOptions options = slide();
+    options.motors = motors;
+    DeviceLoop loop(options, std::array{0.004});
+    DeviceLoop::Reading reading;
+    const std::array<double, 1> one{0.004};
+    loop.arm();
+    rest(loop, one, 1);
+    const std::array<double, 2> two{0.004, 0};
+    reading.position = two;
+    EXPECT_EQ(loop.tick(reading)[0], 0);
+    EXPECT_THAT(loop.force_text(), HasSubstr("a reading has 2 positions; needed: 1"));
+    rest(loop, one, 0.01);
+    if (motors == Motors::real) {
+      EXPECT_THAT(loop.force_text(), HasSubstr("a reading has 2 positions")) << "why it tripped";
+      loop.arm();
+      rest(loop, one, 1);
+    }
+    EXPECT_EQ(loop.force_text(), "");
+  }
+}
+
+TEST(DeviceLoop, SaysAStartOutsideOfTheRangeAndRefusesOneFarOutside) {
+  // The slide goes from -0.2 to 0.2 m.
+  const DeviceLoop near(slide(), std::array{0.21});
+  EXPECT_THAT(near.notes(), testing::Contains(HasSubstr("joint 1 begins at 0.21")));
+  const DeviceLoop inside(slide(), std::array{0.19});
+  EXPECT_THAT(inside.notes(), testing::Not(testing::Contains(HasSubstr("begins at"))));
+  try {
+    const DeviceLoop far(slide(), std::array{-0.25});
+    FAIL();
+  } catch (const LoopError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "position: joint 1 has -0.25; needed: the arm's range of -0.2 to 0.2 m, or a tenth of it "
+        "beyond");
+  }
+}
+
+TEST(DeviceLoop, RefusesSettingsOfTheSimulatedHandAndArm) {
+  LoopOptions options = slide();
+  options.settings.emplace_back("hand.stiffness=300");
+  EXPECT_THROW(DeviceLoop(options, std::array{0.0}), LoopError);
+  EXPECT_NO_THROW(SimulatedLoop{options});
+  DeviceLoop loop(slide(), std::array{0.0});
+  EXPECT_THROW(loop.set("hand.damping=5"), LoopError);
+  EXPECT_THROW(loop.set("hand.damping", 5), LoopError);
+  EXPECT_THROW(loop.set("plant.cogging=0.01"), LoopError);
+}
+
+TEST(Loops, SayWhatIsNotAllowed) {
+  const auto making = [](auto change) {
+    LoopOptions options = slide();
+    change(options);
+    return refusal([&] { DeviceLoop(options, std::array{0.0}); });
+  };
+  EXPECT_THAT(making([](auto& o) { o.settings = {"coupling.etta=1"}; }),
+              HasSubstr("coupling.etta"));
+  EXPECT_THAT(making([](auto& o) { o.settings = {"coupling.eta=-1"}; }), HasSubstr("allowed"));
+  EXPECT_THAT(making([](auto& o) { o.limits.tip_force = 11; }),
+              AllOf(HasSubstr("tip_force: 11"), HasSubstr("0.1 to 10 N")));
+  EXPECT_THAT(making([](auto& o) { o.period = 1; }),
+              HasSubstr("period: 1 s is not allowed; allowed: 1e-05"));
+  EXPECT_THAT(making([](auto& o) {
+                o.period = 0.006;
+                o.motors = Motors::real;
+              }),
+              HasSubstr("real motors; allowed: at most 0.004 s"));
+  EXPECT_THAT(making([](auto& o) { o.settings = {"loop.tick=0.002"}; }), HasSubstr("period"));
+  EXPECT_THAT(making([](auto& o) { o.scene_text += "[[ball]]\n"; }), HasSubstr("scene_text:"));
+  EXPECT_THAT(making([](auto& o) { o.scene = "table.toml"; }), HasSubstr("both given"));
+  EXPECT_THAT(making([](auto& o) {
+                o.scene_text = "";
+                o.scene = "tabel.toml";
+              }),
+              HasSubstr("did you mean table.toml"));
+  EXPECT_THAT(making([](auto& o) { o.arm_text = "<robot/>"; }), HasSubstr("arm_text"));
+  EXPECT_THAT(refusal([] { DeviceLoop(slide(), std::array{0.0, 0.0}); }), HasSubstr("needed: 1"));
+  EXPECT_THAT(refusal([] { DeviceLoop(slide(), std::array{std::nan("")}); }), HasSubstr("finite"));
+
+  EXPECT_THAT(refusal([] {
+                DeviceLoop(LoopOptions{}, std::array{0.0, 0.6, -1.1});
+              }),
+              HasSubstr("arm: is missing"))
+      << "real motors are nobody's default arm";
+
+  DeviceLoop loop(slide(), std::array{0.0});
+  EXPECT_THAT(refusal([&] { loop.set("loop.tick", 0.002); }), HasSubstr("cannot change"));
+  EXPECT_THAT(refusal([&] { loop.set("loop.tick=0.002"); }), HasSubstr("cannot change"));
+  EXPECT_THAT(refusal([&] { loop.set("coupling.eta", 1e9); }), HasSubstr("allowed"));
+  EXPECT_THAT(refusal([&] { (void)loop.row("/device/positon"); }),
+              HasSubstr("no such column; did you mean /device/position?"));
+  EXPECT_THAT(refusal([&] { loop.set("model.gravity", 0.5); }), HasSubstr("allowed: 0 or 1"));
+  EXPECT_THAT(refusal([&] { loop.record(std::string(300, 'x')); }), HasSubstr("xxx"));
+  loop.set("coupling.kind=standard");
+  EXPECT_EQ(loop.get("coupling.kind"), 0);
+}
+
+TEST(Loops, TakeAllSettingsOrNone) {
+  DeviceLoop loop(slide(), std::array{0.0});
+  const double before = loop.get("coupling.k_vc");
+  const std::vector<std::string> wrong{"coupling.k_vc=0.25", "coupling.eta=-1"};
+  EXPECT_THAT(refusal([&] { loop.set(wrong); }), HasSubstr("coupling.eta"));
+  EXPECT_EQ(loop.get("coupling.k_vc"), before);
+  const std::vector<std::string> right{"coupling.k_vc=0.25", "coupling.eta=0.75"};
+  loop.set(right);
+  EXPECT_EQ(loop.get("coupling.k_vc"), 0.25);
+  EXPECT_EQ(loop.get("coupling.eta"), 0.75);
+}
+
+TEST(Loops, RefuseToRecordInTheWordsOfTheLibrary) {
+  const test::TempDir dir;
+  const auto file = dir / "left.h5";
+  std::ofstream(dir / "left.h5.part") << "of a program that ended";
+  DeviceLoop loop(slide(), std::array{0.0});
+  const std::string said = refusal([&] { loop.record(file.string()); });
+  EXPECT_THAT(said, HasSubstr("limpid recover"));
+  EXPECT_THAT(said, AllOf(HasSubstr("`replace` overwrites"), Not(HasSubstr("--force"))));
+}
+
+TEST(DeviceLoop, LooksAtNoPositionsThatAreNotFresh) {
+  DeviceLoop loop = armed();
+  DeviceLoop::Reading reading;
+  reading.elapsed = 1e-3;
+  reading.fresh = false;
+  for (int k = 0; k < 3; ++k) EXPECT_LT(loop.tick(reading)[0], -1) << "they are as they were";
+  for (int k = 0; k < 4; ++k) loop.tick(reading);
+  EXPECT_EQ(loop.tick(reading)[0], 0) << "8 ms old";
+  const std::array<double, 1> x{0.004};
+  LoopOptions real = slide();
+  real.motors = Motors::real;
+  DeviceLoop begins(real, x);
+  begins.tick(reading);
+  EXPECT_THAT(begins.force_text(), HasSubstr("has 0 positions")) << "the first has to be there";
+}
+
+TEST(DeviceLoop, TakesATimeThatCannotBeForAFault) {
+  for (const double elapsed : {std::nan(""), -1e-3, std::numeric_limits<double>::infinity()}) {
+    SCOPED_TRACE(elapsed);
+    const std::array<double, 1> x{0.004};
+    DeviceLoop loop = armed();
+    DeviceLoop::Reading reading;
+    reading.position = x;
+    reading.elapsed = elapsed;
+    EXPECT_EQ(loop.tick(reading)[0], 0);
+    EXPECT_EQ(rest(loop, x, 1), 0);
+    DeviceLoop simulated(slide(), x);
+    rest(simulated, x, 0.1);
+    EXPECT_EQ(simulated.tick(reading)[0], 0);
+    EXPECT_EQ(simulated.force_text(), "force off: a reading's time is wrong");
+    EXPECT_LT(rest(simulated, x, 0.01), -1);
+    EXPECT_EQ(simulated.force_text(), "");
+  }
+}
+
+TEST(DeviceLoop, SaysThatAReadingOfASimulationIsNotFinite) {
+  DeviceLoop loop(slide(), std::array{0.004});
+  rest(loop, std::array{0.004}, 0.1);
+  DeviceLoop::Reading reading;
+  const std::array<double, 1> wrong{std::nan("")};
+  reading.position = wrong;
+  EXPECT_EQ(loop.tick(reading)[0], 0);
+  EXPECT_EQ(loop.force_text(), "force off: a reading is not finite");
+}
+
+TEST(DeviceLoop, SaysThatTicksComeAtAnotherPaceThanThePeriod) {
+  LoopOptions options = slide();
+  options.motors = Motors::real;
+  options.period = 4e-3;
+  DeviceLoop loop(options, std::array{0.0});
+  loop.arm();
+  DeviceLoop::Reading reading;
+  for (int k = 0; k < 1000 || loop.force_share() < 1; ++k) {  // as fast as it goes
+    const std::array<double, 1> x{k % 2 * 1e-6};
+    reading.position = x;
+    loop.tick(reading);
+  }
+  EXPECT_THAT(loop.force_text(), HasSubstr("not every 4 ms as `period` says"));
+}
+
+TEST(DeviceLoop, CountsMotorsThatAreNotSimulatedAsReal) {
+  LoopOptions options = slide();
+  options.motors = static_cast<Motors>(7);
+  DeviceLoop loop(options, std::array{0.004});
+  EXPECT_EQ(rest(loop, std::array{0.004}, 1), 0) << "nobody armed it";
+}
+
+TEST(Loops, SayWhyTheLawIsNotPassive) {
+  LoopOptions options;
+  options.settings = {"coupling.kind=proposed", "coupling.eta=0.1"};
+  SimulatedLoop loop(options);
+  EXPECT_THAT(loop.not_passive_text(), HasSubstr("eta is below eta_min"));
+  loop.set("coupling.eta", 0.9);
+  EXPECT_EQ(loop.not_passive_text(), "");
+  loop.set("coupling.k_vc", 1000);
+  EXPECT_THAT(loop.not_passive_text(), HasSubstr("condition (3)"));
+}
+
+TEST(SimulatedLoop, LetsThroughWhatItsCallerThrows) {
+  SimulatedLoop loop{LoopOptions{}};
+  const Point3 at = loop.tip();
+  const std::array<double, 8> path{0, at[0], at[1], at[2], 1, at[0], at[1], at[2]};
+  const auto run = [&](auto thrown) {
+    loop.run(path, 0, [&](std::span<const double>) -> bool { throw thrown; });
+  };
+  EXPECT_THROW(run(7), int);
+  EXPECT_THROW(run(std::out_of_range("the caller's")), std::out_of_range);
+}
+
+TEST(ArmModel, RefusesNumbersThatAreNotFinite) {
+  const auto refused = [](auto change) {
+    ArmModel arm;
+    arm.joints.resize(2);
+    arm.joints[0].name = "a";
+    arm.joints[1].name = "b";
+    arm.joints[1].mass = 0.1;
+    EXPECT_NE(urdf_text(arm), "");
+    change(arm);
+    return refusal([&] { (void)urdf_text(arm); });
+  };
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(refused([&](auto& arm) { arm.joints[1].upper = nan; }),
+              HasSubstr("joint 'b': upper: nan is not allowed"));
+  EXPECT_THAT(refused([&](auto& arm) { arm.joints[0].lower = -inf; }), HasSubstr("'a': lower"));
+  EXPECT_THAT(refused([&](auto& arm) { arm.joints[0].inertia[2] = nan; }), HasSubstr("inertia"));
+  EXPECT_THAT(refused([&](auto& arm) { arm.tip[1] = inf; }), HasSubstr("arm: tip: inf"));
+}
+
+}  // namespace
+}  // namespace limpid
