@@ -146,7 +146,7 @@ class Run(WithAnArm):
     def test_a_hand_that_does_more_than_follow_a_path_has_no_variations(self) -> None:
         refused = limpid("run", "--hand", ASSETS / "sessions/cup.h5", "--variation", "1")
         self.assertEqual(refused.status, 2)
-        self.assertIn("cup.h5 is more than a path", refused.err)
+        self.assertIn("cup.h5 contains more than a path", refused.err)
 
     def test_short_options_config_and_set_mean_the_same(self) -> None:
         config = self.out(".toml")

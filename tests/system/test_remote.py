@@ -75,7 +75,7 @@ class TestServe(RemoteTest):
             ('{"do": "mark", "text": ""}', "mark: text: 0 bytes in UTF-8; allowed: 1 to 200"),
             ('{"do": "open"}', "nothing to open; allowed: scene, arm, session, hand"),
             ('{"do": "open", "scene": "nowhere.toml"}', "allowed: a path that begins with /, or one of"),
-            ('{"do": "record", "file": "here.h5"}', "allowed: a path from / on, ending in .h5"),
+            ('{"do": "record", "file": "here.h5"}', "allowed: a path that begins with / and ends in .h5"),
             ('{"do": "stop"}', "nothing is being recorded"),
             ('{"do": "ask", "text": "?"}', "needs a window"),
             ('{"id": [1], "do": "hello"}', "id: [1] is not allowed"),

@@ -75,7 +75,7 @@ class Refusals(SystemTest):
                       "experiment": ["inertia", "--out", self.directory / "x"]}.get(command, [])  # fmt: skip
             error = self.refused("--ui-scale", "1.5", command, *needed)
             self.assertIn("--ui-scale", error)
-            self.assertIn(f"limpid {command} opens none", error)
+            self.assertIn(f"limpid {command} opens no window", error)
         error = self.refused("--eta", "0.5", "run")
         self.assertIn("limpid run --eta", error)
         self.assertFalse((self.directory / "x").exists())

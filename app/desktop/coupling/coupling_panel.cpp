@@ -218,7 +218,7 @@ void draw_link(Parameters& p) {
   for (const std::string_view key : info(p.kind).sliders) {
     if (of_link(key)) slider(p, key.data());
   }
-  if (p.linked()) read_out("With the link", info(p.kind).through_link);
+  if (p.linked()) read_out("Link", info(p.kind).through_link);
 }
 
 // Returns whether the law's passivity is a matter of conditions on its gains.

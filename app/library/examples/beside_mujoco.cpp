@@ -74,7 +74,6 @@ int main() {
     mj_step(m, d);
   }
   const double deep = d->site_xpos[1] - wall, wanted = 200 * 0.02 / 1000;  // two springs in a row
-  std::printf("the tip is %.2f mm in the wall; theory of two springs: %.2f mm\n", 1e3 * deep,
-              1e3 * wanted);
+  std::printf("the tip is %.2f mm in the wall, by theory %.2f mm\n", 1e3 * deep, 1e3 * wanted);
   return std::fabs(deep - wanted) < 2e-4 ? 0 : 1;
 }

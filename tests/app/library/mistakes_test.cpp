@@ -1,4 +1,4 @@
-// What callers of the library do wrong: readings, settings and files that cannot be.
+// Readings, settings and files that cannot be, as callers of the library may give them.
 #include <gmock/gmock.h>
 
 #include <fstream>

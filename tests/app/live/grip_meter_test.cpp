@@ -82,7 +82,8 @@ TEST_F(AGripMeter, EndsAtOnceWithTheForceAndDoesNotBeginAgain) {
   session_.loop().cut();
   ASSERT_TRUE(pass(0, [&] { return !meter_.busy(); }));
   ASSERT_NE(meter_.found(), nullptr);
-  EXPECT_THAT(meter_.found()->grip.unknown, testing::HasSubstr("force went off: not armed"));
+  EXPECT_THAT(meter_.found()->grip.unknown,
+              testing::HasSubstr("the force was switched off: not armed"));
   EXPECT_EQ(meter_.why_not(), "The force is off. Arm the force first.");
   session_.loop().arm();
   ASSERT_TRUE(pass(0, [&] { return session_.loop().snapshot().arming == Arming::on; }));

@@ -350,7 +350,7 @@ TEST_F(CouplingWords, OfALinkSayHowLongItIs) {
   draw();
   EXPECT_TRUE(find("Link: 5 ticks, 10 ms each way"));
   click("Link: 5 ticks, 10 ms each way");
-  EXPECT_EQ(value("With the link"), info(p_.kind).through_link);
+  EXPECT_EQ(value("Link"), info(p_.kind).through_link);
 }
 
 // A re-run makes the changes of the recording, but for settings that it begins otherwise.
