@@ -98,8 +98,8 @@ void print(const TipLimits& tip, const Parameters& p, bool all) {
     fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", name(kind), wall.stiffness, wall.bound);
   }
   fmt::print(
-      "stiffest wall, in any hand {:>6.0f} N/m  for a wall that is a simple spring: b_d/(T/2 + "
-      "delay) (Colgate and Schenkel)\n",
+      "stiffest wall, in any hand {:>6.0f} N/m  a wall that is a simple spring is passive up to "
+      "b_d/(T/2 + delay) (Colgate and Schenkel)\n",
       tip.every_hand);
   if (tip.scene > 0) fmt::print("stiffest in the scene      {:>6.0f} N/m\n", tip.scene);
   if (const std::string less = less_added_text(tip, p); !less.empty()) {

@@ -315,9 +315,9 @@ Command declare_characterize(CLI::App& app) {
   command->footer(
       "For each law the report shows the stiffest wall that feels as stiff as it is set and does "
       "not vibrate,\nthe energy given to the hand, and mass and damping felt in free motion, next "
-      "to the values that `limpid analyze`\ncomputes. All numbers come from the virtual arm of "
-      "that file: a real device may differ. The report says\nwhich numbers are measured, set and "
-      "assumed. Exit status 1: a promise was not kept, or the command was\nstopped.\n\n" +
+      "to the values that\n`limpid analyze` computes. All numbers come from the virtual arm of "
+      "that file: a real device may differ.\nThe report says which numbers are measured, set and "
+      "assumed. Exit status 1: a promise was not kept, or\nthe command was stopped.\n\n" +
       parameter_help());
   return [options] { return run_characterize(*options); };
 }

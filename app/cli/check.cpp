@@ -394,7 +394,7 @@ Command declare_check(CLI::App& app) {
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(
       "The report on an arm contains its chain, masses, reach and suitable gains. --tip LINK names "
-      "the link where the chain\nends; --device is the arm that a scene or a hand is for. Exit "
+      "the link\nwhere the chain ends; --device is the arm that a scene or a hand is for. Exit "
       "status: 0 fine,\n1 works, with warnings, 2 does not work; the report says why.");
   return [options] { return check(*options); };
 }

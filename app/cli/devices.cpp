@@ -111,7 +111,7 @@ Command declare_devices(CLI::App& app) {
       "libraries are installed: limpid-vendor\nloads the libraries, and `limpid doctor` says which "
       "libraries are missing.\n\nThe arm's joint ranges and link lengths limit what a device's "
       "motors may do. If a device does not report\nits arm, choose the arm once, here or in the "
-      "window's Device panel. Until then Limpid uses a built-in arm with the same\nnumber of "
+      "window's Device panel. Until then Limpid uses a built-in arm\nwith the same number of "
       "joints, and gives only little force.");
   auto options = std::make_shared<ArmOptions>();
   auto* arm =

@@ -104,7 +104,7 @@ std::string state_text(const DeviceSeen& seen) {
                                            : fmt::format("pressed: {}", fmt::join(buttons, ", "))) +
       look_line("hand", for_some_time(seen.without_hand,
                                       "held the switch all the time, or the device has no switch",
-                                      "nobody holds the switch")) +
+                                      "nobody held the switch")) +
       look_line("calibration",
                 for_some_time(seen.uncalibrated, "no problem reported", "not calibrated")) +
       look_line("fault", for_some_time(seen.fault, "none", "reported")) + causes_text(seen);

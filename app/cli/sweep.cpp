@@ -240,7 +240,7 @@ Command declare_sweep(CLI::App& app) {
   auto* gather = command->add_flag("--gather", options->gather,
                                    "run nothing; only collect the existing results");
   auto* mpi = command->add_flag("--mpi", options->mpi,
-                                "runs only the part of this process (its rank), under mpirun");
+                                "run only the part of this process (its rank), under mpirun");
   auto* slurm = command->add_flag("--slurm", options->slurm, "run as an array job of Slurm");
   for (auto* one : {shard, gather, mpi, slurm}) {
     for (auto* other : {shard, gather, mpi, slurm}) {

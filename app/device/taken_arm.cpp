@@ -108,7 +108,7 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
   if (!notes.arm.empty()) {
     ArmDescription arm = read_known(notes.arm, "",
                                     "the device was identified as this arm; `limpid identify "
-                                    "--forget` goes back to the device's default arm");
+                                    "--forget` removes the identified arm");
     if (!arm.delay && notes.delay >= 0) arm.delay = notes.delay;
     if (arm.dof() != traits.dof) {
       add(besides, not_as_many("was identified as", arm, traits) +

@@ -52,8 +52,8 @@ std::string mend_limits() {
   }
   return fmt::format(
       "printf '{0} - rtprio 80\\n{0} - memlock unlimited\\n' | sudo tee "
-      "/etc/security/limits.d/limpid-{0}.conf    # allows real-time priority; log in again after "
-      "it",
+      "/etc/security/limits.d/limpid-{0}.conf    # allows real-time priority and locked memory; "
+      "then log in again",
       user());
 }
 
@@ -88,19 +88,17 @@ Finding priority(const RealtimeReport& report) {
 Finding memory(const RealtimeReport& report) {
   const std::string limit = limit_text(RLIMIT_MEMLOCK, " KiB", 1024);
   if (report.memory_locked) {
-    return {
-        kRealTimeArea,
-        "memory",
-        State::fine,
-        fmt::format("is locked in memory, and never moved to the disk (RLIMIT_MEMLOCK {})", limit),
-        {},
-        {}};
+    return {kRealTimeArea,
+            "memory",
+            State::fine,
+            fmt::format("is locked, and is never moved to the disk (RLIMIT_MEMLOCK {})", limit),
+            {},
+            {}};
   }
   return {kRealTimeArea,
           "memory",
           State::better,
-          fmt::format("is not locked in memory, and may be moved to the disk (RLIMIT_MEMLOCK {})",
-                      limit),
+          fmt::format("is not locked, and may be moved to the disk (RLIMIT_MEMLOCK {})", limit),
           "a tick is late if Limpid's memory was moved to the disk",
           mend_limits()};
 }

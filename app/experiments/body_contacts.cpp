@@ -77,8 +77,8 @@ BodyFindings slides(double tick) {
        .measured = 1e3 * (bench.world().center(0) - before).norm(),
        .limit = kDriftLimit,
        .relative = false,
-       .conditions = fmt::format("Friction {}, {}, computed even at rest. The error is its "
-                                 "displacement from 0.5 to 5.5 s.",
+       .conditions = fmt::format("Friction {}, {}, computed even at rest. The error is the "
+                                 "block's displacement from 0.5 to 5.5 s.",
                                  friction, size)});
   return found;
 }

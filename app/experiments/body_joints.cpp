@@ -192,7 +192,8 @@ void add_tumbling(double tick, double spin, BodyFindings& found) {
        .expected = expected,
        .measured = measured,
        .limit = 0.5,
-       .conditions = of + ". Theory: Euler's equations with a hundredth of the tick."});
+       .conditions =
+           of + ". Theory: Euler's equations, solved in steps of a hundredth of the tick."});
   found.claims.push_back({.group = "spin",
                           .what = which + ": energy after ten seconds",
                           .unit = "mJ",

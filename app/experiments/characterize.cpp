@@ -126,7 +126,7 @@ FigurePanel walls_panel(const std::vector<LawRendered>& laws) {
                     .y_range = std::pair(0.5 * kLeastWall, 2 * kMostWall)};
   Series measured{
       "measured: felt as stiff as set, and quiet", kDeviceInk, Series::Style::points, {}};
-  Series named{"computed by limpid analyze", kNeutralInk, Series::Style::points, {}};
+  Series named{"computed by `limpid analyze`", kNeutralInk, Series::Style::points, {}};
   named.mark = 2;
   for (std::size_t i = 0; i < laws.size(); ++i) {
     panel.x_ticks.emplace_back(i, info(laws[i].kind).key);
@@ -204,8 +204,8 @@ void judge_free(const LawRendered& law, std::vector<Check>& checks) {
     off = worse(off, felt == nullptr ? std::nan("") : std::abs(felt->inertia / named.inertia - 1));
   }
   Check check = at_most(
-      "predictive: relative deviation of the mass felt from the mass that limpid analyze computes, "
-      "0.5 to 5 Hz",
+      "predictive: relative deviation of the mass felt from the mass that `limpid analyze` "
+      "computes, 0.5 to 5 Hz",
       off, kFreeOff);
   check.unjudged = kNoPromise;
   checks.push_back(std::move(check));

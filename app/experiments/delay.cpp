@@ -252,7 +252,7 @@ std::vector<FigurePanel> draw(const LateTable& table) {
   FigurePanel free = against_etas(table, "Free motion: largest energy given to the hand",
                                   "energy [mJ]", kEnergies, [](auto& f) { return 1e3 * f.free; });
   FigurePanel wall =
-      against_etas(table, "Wall that `limpid analyze` computes: largest energy given to the hand",
+      against_etas(table, "Wall by `limpid analyze`: largest energy given to the hand",
                    "energy [mJ]", kEnergies, [](auto& f) { return 1e3 * f.wall; });
   for (FigurePanel* panel : {&free, &wall}) {
     panel->log_y = true;
@@ -320,7 +320,7 @@ Outcome delay(TrialRunner& lab) {
       "ms. The law knows this delay (model.delay) or does not know it. Grips are {} to {} N/m with "
       "{} N s/m; the worst grip is drawn. Free motion: the tip is shaken at all frequencies from "
       "0.5 to 7 Hz together, {} mm at 1 Hz. The inertia felt is compared with the inertia that "
-      "limpid analyze computes: eta times the arm's own inertia, minus the part that delayed "
+      "`limpid analyze` computes: eta times the arm's own inertia, minus the part that delayed "
       "networks remove. If the delay is not known, delayed dampers remove a part too. At walls the "
       "tip taps at {} m/s and presses with {} N. Points outside a frame are drawn at the frame's "
       "edge.",

@@ -84,7 +84,7 @@ Outcome drop(TrialRunner& lab) {
   FigurePanel force =
       drop_panel(fmt::format("Force on the tip, K_o = {} N/m", kDropUsual), "force [N]");
   FigurePanel beyond = drop_panel(
-      fmt::format("Energy to the human minus the energy of the block; block of {} N/m", kDropUsual),
+      fmt::format("Energy to the human minus the block's energy, K_o = {} N/m", kDropUsual),
       "energy [mJ]");
   Outcome outcome;
   for (std::size_t i = 0; i < trials.size(); ++i) {

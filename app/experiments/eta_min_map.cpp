@@ -71,13 +71,15 @@ Outcome eta_min_map(TrialRunner& lab) {
   const std::string locked_text = fmt::format(
       "Routh's limit with device and proxy locked together, grips up to {} N/m", kUsualGrip);
   outcome.checks = {
-      at_most("ticks of 0.1 ms: largest distance in eta to the wrong side of Routh's limit with "
-              "the proxy on its spring, all grips",
+      at_most("ticks of 0.1 ms: largest distance in eta of points on the wrong side of Routh's "
+              "limit with the proxy on its spring, all grips",
               misplaced(plan, table, kFine, HUGE_VAL, "routh_compliant"), kEtaStep),
-      at_most("ticks of 0.1 ms: largest distance in eta to the wrong side of " + locked_text,
-              misplaced(plan, table, kFine, kUsualGrip, "routh"), kEtaStep),
-      at_most("ticks of 1 ms: largest distance in eta to the wrong side of " + locked_text,
-              misplaced(plan, table, kPaper, kUsualGrip, "routh"), kEtaStep)};
+      at_most(
+          "ticks of 0.1 ms: largest distance in eta of points on the wrong side of " + locked_text,
+          misplaced(plan, table, kFine, kUsualGrip, "routh"), kEtaStep),
+      at_most(
+          "ticks of 1 ms: largest distance in eta of points on the wrong side of " + locked_text,
+          misplaced(plan, table, kPaper, kUsualGrip, "routh"), kEtaStep)};
   return outcome;
 }
 

@@ -143,8 +143,8 @@ constexpr std::array kExperiments{
         "stacks of bodies: how deep they sink into each other, iterations of the solver, energy",
         stack},
     Experiment{"bodies",
-               "motion of bodies compared with closed-form solutions; values too large and too "
-               "small count as errors",
+               "motion of bodies compared with closed-form solutions; both too large and too "
+               "small values count as errors",
                bodies, Takes::none, "bodies without an arm"},
 };
 
@@ -485,7 +485,8 @@ std::string why_not(const Experiment& experiment, const ExperimentArm& on) {
   if (on.built_in()) return {};
   const std::string begin = std::string(experiment.name) + ": ";
   if (experiment.takes == Takes::none) {
-    return begin + "accepts no --arm, because it has arms of its own: " + experiment.own_arms;
+    return begin + "accepts no other arm or settings, because it has arms of its own: " +
+           experiment.own_arms;
   }
   if (on.description.dof() != kJoints) {
     return begin + fmt::format("needs an arm of {} joints; {} has {}", kJoints, on.description.name,

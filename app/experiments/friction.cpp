@@ -226,11 +226,10 @@ FigurePanel stick_panel(const Trial& trial, const Dragged& d) {
 }
 
 FigurePanel taken_panel(const std::vector<Dragged>& all) {
-  FigurePanel panel{.title =
-                        "Energy that friction gave: work of the friction force, plus energy in the "
-                        "friction's spring",
-                    .x_label = "time [s]",
-                    .y_label = "energy [mJ]"};
+  FigurePanel panel{
+      .title = "Energy that friction gave: work of its force plus energy in its spring",
+      .x_label = "time [s]",
+      .y_label = "energy [mJ]"};
   for (const Dragged& d : all) {
     const Session& s = d.result.session;
     panel.series.push_back(over_time(s, d.what.label, d.what.ink, Series::Style::line, [&](auto k) {

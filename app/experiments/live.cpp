@@ -32,7 +32,7 @@ constexpr std::array kLiveExperiments{
                    live_coordination},
     LiveExperiment{"inertia", "what you feel at three etas (Fig. 5)", live_inertia},
     LiveExperiment{"passivity",
-                   "controller energy while you touch a wall and move in circles (Fig. 6)",
+                   "controller energy while you touch a surface and draw circles on it (Fig. 6)",
                    live_passivity},
     LiveExperiment{"zwidth", "the stiffest wall that does not vibrate in your hand", live_zwidth},
 };

@@ -360,14 +360,14 @@ Outcome mass(TrialRunner& lab) {
       "The magnet holds a cube without weight by the centre of mass, at {} N/m ({} N/m where the "
       "label says so). The hand shakes the tip at five frequencies together: {} mm at 1 Hz and "
       "less at higher frequencies. The mass felt is the hand's force in phase with the tip's "
-      "acceleration, minus the same part of the force when the hand shakes {} mg (under the other "
-      "laws: no cube). The spring between tip and cube turns a mass m into m / (1 - m w^2 / K). "
-      "{}Staggered means no coupling: the force of a tick is computed from the last positions of "
-      "tip and body, and the body moves after the tick. Last panel: the hand suddenly moves the "
-      "tip by {} mm, and the cube comes to rest or does not; the motors never reach their limit. "
-      "While the device stands still, a staggered body needs a mass of at least K T^2/4 + B T/2 "
-      "(Jury). The device does not stand still above {} N/m, or without a damper. Where a curve "
-      "ends, no mass up to {} kg is stable.",
+      "acceleration, minus the same part of the force when the hand shakes a cube of {} mg (under "
+      "the other laws: no cube). The spring between tip and cube turns a mass m into m / (1 - m "
+      "w^2 / K). {}Staggered means no coupling: the force of a tick is computed from the last "
+      "positions of tip and body, and the body moves after the tick. Last panel: the hand suddenly "
+      "moves the tip by {} mm, and the cube comes to rest or does not; the motors never reach "
+      "their limit. While the device stands still, a staggered body needs a mass of at least K "
+      "T^2/4 + B T/2 (Jury). The device does not stand still above {} N/m, or without a damper. "
+      "Where a curve ends, no mass up to {} kg is stable.",
       kHeld, kHeldSoftly, 1e3 * kHeldAmplitude, 1e6 * kSpeck, not_held(all), 1e3 * kNudge,
       kStillDevice, kHeaviest);
   return outcome;

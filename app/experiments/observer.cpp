@@ -177,7 +177,7 @@ void response(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   const Modes modes = modes_of(trials.front().plan.arm);
   const std::vector<TrialResult> results = lab.run(trials);
   FigurePanel panel;
-  panel.title = "Estimated divided by true human torque, heaviest mode (lines: theory)";
+  panel.title = "Estimated / true human torque, heaviest mode (lines: theory)";
   panel.x_label = "frequency [Hz]";
   panel.y_label = "gain [-]";
   panel.log_x = panel.log_y = true;

@@ -49,8 +49,8 @@ struct Imperfection {
 const std::vector<Imperfection>& imperfections() {
   using P = Parameters;
   static const std::vector<Imperfection> all{
-      {"motors give more", "of the command", 1, &P::torque_scale, {1.1, 1.2, 1.3, 1.5, 2}, 4},
-      {"motors give less", "of the command", 1, &P::torque_scale, {0.9, 0.8, 0.7, 0.5}, 4},
+      {"motors give more", "times the command", 1, &P::torque_scale, {1.1, 1.2, 1.3, 1.5, 2}, 4},
+      {"motors give less", "times the command", 1, &P::torque_scale, {0.9, 0.8, 0.7, 0.5}, 4},
       {"current loop", "Hz", 1, &P::current_loop, {2000, 1000, 500, 300, 200, 100, 50}, 5},
       {"resonance", "Hz", 1, &P::resonance, {1000, 700, 500, 300, 200, 150, 100, 70, 50, 30}, 3},
       {"cogging", "mN m", 1e3, &P::cogging, {5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2}, 6},
@@ -58,13 +58,13 @@ const std::vector<Imperfection>& imperfections() {
       {"eccentric encoders", "mrad", 1e3, &P::eccentricity, {5e-4, 1e-3, 2e-3, 5e-3, 1e-2}, 5},
       {"wrong zero", "mrad", 1e3, &P::zero_error, {1e-2, 2e-2, 5e-2, 0.1, 0.2}, 5},
       {"model's inertia too large",
-       "of the true inertia",
+       "times the true inertia",
        1,
        &P::inertia_error,
        {1.25, 1.5, 2, 3},
        4},
       {"model's inertia too small",
-       "of the true inertia",
+       "times the true inertia",
        1,
        &P::inertia_error,
        {0.8, 0.67, 0.5, 0.33},
@@ -339,7 +339,7 @@ void tell_ends(const Robustness& all, std::vector<Check>& checks) {
         const std::size_t last = all.kept_to(a, l, w);
         if (!kRobustLaws[l].promises || last == way.levels.size()) continue;
         Check end = at_most(
-            fmt::format("{}, {}: worst {} at which at most 5 mJ are given [{}]",
+            fmt::format("{}, {}, {}: worst value at which at most 5 mJ are given [{}]",
                         kRobustArms[a].name, info(kRobustLaws[l].kind).key, way.title, way.unit),
             last > 0 ? way.scale * way.levels[last - 1] : std::nan(""), 0);
         end.unjudged = "No theory gives this limit.";

@@ -117,7 +117,7 @@ Trial press(const ExperimentArm& on, const std::string& name, CouplingKind kind,
     return Vec3(kAhead, 0, kDeepest * part);
   };
   const std::string source =
-      fmt::format("the hand moves down to {} m in {} s; at {} s the hand starts back, in {} s",
+      fmt::format("the hand moves down to {} m in {} s, and from {} s on moves back in {} s",
                   kDeepest, kReached, kPullOut, kOut - kPullOut);
   return {name, plan_in(on.description, kTableScene, hand_path(source, p.tick, kOver, at), p)};
 }

@@ -119,7 +119,8 @@ Outcome spectrum(TrialRunner& lab) {
   figure.panels = {density, part};
   outcome.checks = {
       at_least("share of the power of all trials below 5 Hz", below / total, 0.95),
-      at_least("share of the power below 5 Hz in the trial where it is smallest", least, 0.9),
+      at_least("share of the power below 5 Hz in the trial where this share is smallest", least,
+               0.9),
   };
   return outcome;
 }

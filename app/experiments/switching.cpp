@@ -174,11 +174,9 @@ FigurePanel stop_panel(const Session& s) {
 
 FigurePanel gain_panel(const Session& paper, const Balance& papers, const Session& ours,
                        const Balance& own, const Balance& stiff) {
-  FigurePanel panel{
-      .title =
-          "Energy that the joint's end stop gave minus the energy that was stored in the end stop",
-      .x_label = "time [s]",
-      .y_label = "energy [μJ]"};
+  FigurePanel panel{.title = "Energy that the stop gave minus the energy stored in the stop",
+                    .x_label = "time [s]",
+                    .y_label = "energy [μJ]"};
   const auto label = [](const char* law, double stop) {
     return fmt::format("{}, {} N m/rad", law, stop);
   };
@@ -274,8 +272,8 @@ Outcome switching(TrialRunner& lab) {
       at_most("switching while pressing: largest change of a motor's torque in a tick after the "
               "transition [N m]",
               steps.there, 0.05),
-      at_most("law switched while pressing: difference between recorded energies and torques times "
-              "motions [J]",
+      at_most("switching while pressing: difference between the recorded energies and torques "
+              "times motions [J]",
               books_off(turns), 1e-12)};
   return outcome;
 }

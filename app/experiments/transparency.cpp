@@ -209,7 +209,7 @@ Series scaling_line(const FeltJoint& joint, double w_f, double f, const char* in
 
 FigurePanel scaling_panel(const Felt& felt, std::size_t at_one, double w_f) {
   FigurePanel panel;
-  panel.title = "Impedance in free motion, divided by the impedance at eta = 1 (lines: theory)";
+  panel.title = "Impedance in free motion / impedance at eta = 1 (lines: theory)";
   panel.x_label = "eta [-]";
   panel.y_label = "|Z(eta)| / |Z(1)| [-]";
   panel.log_x = panel.log_y = true;

@@ -88,9 +88,10 @@ void compare_range(const ArmDescription& arm, std::size_t joint, double x,
   constexpr double kBeyond = 0.1;  // part of the range
   const double room = kBeyond * (of.upper - of.lower);
   if (x < of.lower - room || x > of.upper + room) {
-    throw LoopError(fmt::format(
-        "position: joint {} has {:.4g}; needed: the arm's range of {}, or a tenth of it beyond",
-        joint + 1, x * unit, range));
+    throw LoopError(
+        fmt::format("position: joint {} has {:.4g}; needed: in the arm's range of {}, or outside "
+                    "it by at most a tenth of the range",
+                    joint + 1, x * unit, range));
   }
   notes.push_back(fmt::format("joint {} begins at {:.4g}, outside of its range of {}", joint + 1,
                               x * unit, range));

@@ -80,7 +80,8 @@ class JudgedLaws {
       return unknown("no limit is computed for a law with a link between device and proxy");
     }
     if (loop == LinearLoop::fed_forward && p_.velocity != VelocitySource::raw) {
-      return unknown("a stability limit is computed only with unfiltered velocities");
+      return unknown(
+          "a limit is computed only with unfiltered velocities (observer.velocity = raw)");
     }
     SafeWalls found{kEvery, std::nullopt,
                     "the sampled loop of arm, hand and wall, with exact encoders"};

@@ -248,8 +248,8 @@ void StorySettings::read(const TomlTable& step, const std::string& where, double
        {std::pair{"set", kAll}, {"first", kMainLane}, {"twin", kTwinLane}, {"lane3", kThird}}) {
     if (lane == kThird && now_.size() <= kThird && step.find(key) != nullptr) {
       step.refuse(key,
-                  "this key in a later step only if the first step has this key as well and so "
-                  "begins the third run");
+                  "this key in later steps only if the first step has it too; the first step then "
+                  "starts the third run");
     }
     for (const auto& [setting, line] : settings_in(step, key)) {
       try {

@@ -285,7 +285,7 @@ SweepMap make_map(const OpenedSweep& sweep, const MapChoice& choice) {
 
 std::string theory_label(const std::string& line) {
   if (line == "pr") return "PR (25)";
-  return line == "routh" ? "Routh, locked" : "stability by Routh, proxy on its spring";
+  return line == "routh" ? "Routh, locked" : "Routh, proxy on its spring";
 }
 
 double eta_limit(const std::string& line, const RunPlan& run) {

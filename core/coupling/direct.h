@@ -24,8 +24,7 @@ struct DirectLaw {
       .key = "direct",
       .label = "Direct",
       .meaning = "without a proxy: the walls' springs act on the device itself.",
-      .verdict =
-          "Most programs use this law. Stiff walls are stable only if the hand damps enough.",
+      .verdict = "Most programs use this law. Stiff walls need a hand that damps enough.",
       .promise = Promise::none,
       .loop = LinearLoop::on_device,
       .on_device = true,

@@ -27,7 +27,7 @@ struct ObserverSettings {
               &P::anti_windup, "-", 0, 1, 0, 1, false, true,
               "Give the observer the torque that the motors really gave (section 3.1). Without it "
               "the estimate grows too large while motors are at their limit in contact, and the "
-              "proxy stays behind."},
+              "proxy stays behind when the hand moves back."},
              {"observer.velocity", "velocity", "Velocity estimate",
               choice<P, &P::velocity>(kVelocitySources), "-", 0, 2, 0, 2, false, true,
               "Velocity estimate: raw difference of positions, low-pass, or adaptive window "

@@ -30,9 +30,7 @@ struct PopcLaw {
       .meaning =
           "without a proxy: walls act on the device itself, with a damper that takes back the "
           "energy the walls gave (passivity observer and controller, Hannaford and Ryu 2002).",
-      .verdict =
-          "Its damper takes back most of that energy. With coarse encoders it measures the energy "
-          "wrongly.",
+      .verdict = "Takes back most of the energy that walls gave. Coarse encoders cause errors.",
       .promise = Promise::observer,
       .on_device = true,
       .for_comparison = true,
@@ -47,15 +45,17 @@ struct PopcLaw {
 
     template <class P>
     static constexpr std::array<Field<P>, 2> settings() {
-      return {{{"popc.damping", "PC's damper", "Largest damper of PO/PC", &P::popc_damping, "M1/T",
-                0.02, 1, 0.02, 1, false, true,
-                "PO/PC: largest damping of the law's damper, as a part of M1/T, divided by (1 + "
-                "delay in ticks)."},
-               {"popc.reference", "reference", "Reference energy", &P::popc_reference, "-", 0, 1, 0,
-                1, false, true,
-                "PO/PC: the damper acts if the energy that came in is less than the energy that "
-                "the walls store. Off: the damper acts if it is less than zero (the law of 2002). "
-                "Then a bounce first uses up the stored energy, and the damper acts later."}}};
+      return {
+          {{"popc.damping", "PC's damper", "Largest damper of PO/PC", &P::popc_damping, "M1/T",
+            0.02, 1, 0.02, 1, false, true,
+            "PO/PC: largest damping of the law's damper, as a part of M1/T, divided by (1 + "
+            "delay in ticks)."},
+           {"popc.reference", "reference", "Reference energy", &P::popc_reference, "-", 0, 1, 0, 1,
+            false, true,
+            "PO/PC: the damper acts if the energy that came in is less than the energy that "
+            "the walls store. Off: the damper acts if the energy that came in is less than zero "
+            "(the law of 2002). Then a bounce first uses up the stored energy, and the damper "
+            "acts later."}}};
     }
   };
 

@@ -73,7 +73,7 @@ struct PredictorSettings {
           "energy account covers every delay from model.delay to model.delay_most. With a larger "
           "value eta above 1 is felt in a narrower frequency band. Default for the virtual arm: "
           "device.delay. Default for a real device: one tick more than the identified delay, or "
-          "3."}}};
+          "3 if the delay was not identified."}}};
   }
 };
 
@@ -85,9 +85,9 @@ struct LedgerSettings {
     return {{{"ledger.energy", "ledger E\xE2\x82\x80", "Energy allowed E\xE2\x82\x80", &P::energy,
               "J", 1e-4, 0.02, 1e-3, 0.02, true, true,
               "Predictive coupling: since the start of the loop the human gets at most this energy "
-              "more than the energy that came in. In any shorter time the human gets at most four "
-              "times this energy more. When the reserve is low the law reduces the contact force, "
-              "the cancelled damping and the added inertia."}}};
+              "more than the energy that came in. In any part of this time the human gets at most "
+              "four times this energy more than the energy that came in. When the reserve is low "
+              "the law reduces the contact force, the cancelled damping and the added inertia."}}};
   }
 };
 

@@ -27,7 +27,7 @@ struct ProposedLaw {
       .loop = LinearLoop::fed_forward,
       .takes_eta = true,
       .observes = true,
-      .through_link = "no stability limit is known with feedforward",
+      .through_link = "passivity is not known with feedforward",
       .sliders = kSliders,
   };
 

@@ -123,8 +123,8 @@ class Sfa final : public Law<N> {
 
 TipWall SfaLaw::wall(const LawSettings& p, const LawAtTip& at) {
   const double soft = p.sfa_soft * every_hands_wall(at.tip, at.loop.T, at.loop.delay);
-  return {soft, fmt::format("the law's spring is soft: in this grip, at rest, each correction "
-                            "leaves a share of {:.2g} of the force error",
+  return {soft, fmt::format("the law's spring is soft: in this grip, at rest, each increment "
+                            "leaves a share of {:.2g} of the missing force",
                             1 - p.sfa_step * soft / (soft + at.hand_stiffness))};
 }
 

@@ -48,14 +48,14 @@ struct SfaLaw {
     static constexpr std::array<Field<P>, 3> settings() {
       return {{{"sfa.soft", "soft spring rho", "Stiffness at the start", &P::sfa_soft, "-", 0.05, 1,
                 0.05, 1, false, true,
-                "Augmentation: stiffness at the start, as a part of b_d/(T/2 + delay). Up to that "
-                "stiffness the wall is stable in every hand."},
+                "Augmentation: stiffness at the start, divided by b_d/(T/2 + delay), the largest "
+                "stiffness that is stable in every hand."},
                {"sfa.step", "step sigma", "Part added at a time", &P::sfa_step, "-", 0.01, 1, 0.01,
                 1, false, true,
                 "Augmentation: part of the missing force that one increment adds if the hand does "
                 "not move."},
-               {"sfa.extended", "extended", "Start with the full stiffness of the wall",
-                &P::sfa_extended, "-", 0, 1, 0, 1, false, true,
+               {"sfa.extended", "extended", "Start with full stiffness", &P::sfa_extended, "-", 0,
+                1, 0, 1, false, true,
                 "Augmentation: a wall pushes with its full stiffness until the hand moves back or "
                 "rests for the first time. Off: the wall is soft from the start."}}};
     }

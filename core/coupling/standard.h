@@ -16,10 +16,10 @@ struct StandardLaw {
       .key = "standard",
       .label = "Standard",
       .meaning = "only spring and damper, equations (1)-(2).",
-      .verdict = "The usual coupling. The distance between hand and world grows.",
+      .verdict = "The usual coupling. In contact, device and proxy move apart (drift).",
       .promise = Promise::condition3,
       .loop = LinearLoop::behind_spring,
-      .through_link = "passive if condition (3) is true",
+      .through_link = "passive if condition (3) is met",
       .sliders = kSliders,
   };
 

@@ -29,14 +29,12 @@ struct TdpnLaw {
       .meaning =
           "sends the device's velocity to the proxy and a force back. A damper on each side keeps "
           "both sides passive (Ryu, Artigas and Preusche 2010).",
-      .verdict =
-          "Its dampers take most of the given energy out again. The distance between device and "
-          "proxy grows.",
+      .verdict = "Takes back most of the energy given. Device and proxy move apart (drift).",
       .promise = Promise::observer,
       .for_links = true,
       .for_comparison = true,
       .through_link =
-          "dampers take back the energy that both ports gave; a longer delay makes walls softer",
+          "dampers take back the energy that both sides gave; a longer delay makes walls softer",
       .damper_share =
           "100 % while the device's damper does not act, 0 % at the largest damper allowed",
       .sliders = kSliders,

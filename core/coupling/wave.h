@@ -33,9 +33,7 @@ struct WaveLaw {
       .label = "Wave variables",
       .meaning =
           "waves on a line connect device and proxy, at any delay (Niemeyer and Slotine 1991).",
-      .verdict =
-          "Stable with any delay. Walls feel no stiffer than the wave line between device and "
-          "proxy.",
+      .verdict = "Stable at any delay. Walls feel no stiffer than the wave line.",
       .promise = Promise::line,
       .for_links = true,
       .for_comparison = true,
@@ -50,14 +48,16 @@ struct WaveLaw {
 
     template <class P>
     static constexpr std::array<Field<P>, 2> settings() {
-      return {{{"wave.b", "line b", "Impedance of the line", &P::wave_b, "N m s/rad", 1e-5, 10,
-                1e-3, 0.1, true, true,
-                "Wave variables: wave impedance b. Default: b_v; the proxy's damper has the same "
-                "value. With a delay a larger b feels stiffer and resists free motion more."},
-               {"wave.matched", "matched", "Line matched at the device", &P::wave_matched, "-", 0,
-                1, 0, 1, false, true,
-                "Wave variables: a damper b at the device absorbs the waves that come back. Off: "
-                "the device reflects these waves."}}};
+      return {
+          {{"wave.b", "line b", "Impedance of the line", &P::wave_b, "N m s/rad", 1e-5, 10, 1e-3,
+            0.1, true, true,
+            "Wave variables: impedance b of the line. Default: b_v, so that the proxy's damper "
+            "matches the line. With a larger b walls feel stiffer if there is a delay, and free "
+            "motion is damped more."},
+           {"wave.matched", "matched", "Line matched at the device", &P::wave_matched, "-", 0, 1, 0,
+            1, false, true,
+            "Wave variables: a damper b at the device absorbs the waves that come back. Off: "
+            "the device reflects these waves."}}};
     }
   };
 

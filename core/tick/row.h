@@ -143,8 +143,8 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::force_state, "/device/force_state", ColumnWidth::one, "-",
      "0: force on; else the reason why it is off or reduced: 1 not armed, 2 no hand, 3 no new "
      "reading, 4 fault, 5 not connected, 6 too fast, 7 out of range, 8 too much energy, 9 "
-     "unstable, 10 the window does not answer, 11 the loop stopped, 12 the readings do not change, "
-     "13 a reading is impossible",
+     "unstable, 10 the window does not answer, 11 the loop stopped for a moment, 12 the readings "
+     "do not change, 13 a reading is impossible",
      true},
     {Column::kind, "/coupling/kind", ColumnWidth::one, "-", kLawNumbers.data(), true},
     {Column::eta, "/coupling/eta", ColumnWidth::one, "-", "impedance scaling"},
@@ -153,8 +153,8 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "share of the contact force that the energy account allows; tank: the proxy's damping divided "
      "by the sum of this damping and the damping that its tank adds"},
     {Column::damping_governor, "/coupling/damping_governor", ColumnWidth::one, "-",
-     "share of the damping cancellation that the energy account allows; popc: 1 minus the share of "
-     "its largest damper that acts"},
+     "share of the damping cancellation that the energy account allows; popc and tdpn: 1 minus the "
+     "share of the law's largest damper that acts"},
     {Column::torque_governor, "/coupling/torque_governor", ColumnWidth::one, "-",
      "share of all torque that the energy account (predictive, eba) or the device's tank allows; "
      "sfa: share of the walls' full torque that it has reached"},
@@ -212,7 +212,8 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::objects_sweeps, "/objects/sweeps", ColumnWidth::if_bodies, "-",
      "iterations over all contacts until the forces of the tick were found"},
     {Column::objects_left_out, "/objects/left_out", ColumnWidth::if_bodies, "-",
-     "number of contact points of bodies that exceed the loop's memory: these points do not push"},
+     "number of contact points of bodies for which the loop has no memory: these points do not "
+     "push"},
     {Column::objects_stood_still, "/objects/stood_still", ColumnWidth::if_bodies, "-",
      "ticks so far in which the solver found no forces for the bodies; the bodies did not move in "
      "these ticks"},

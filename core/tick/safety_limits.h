@@ -50,8 +50,7 @@ inline constexpr auto kSafetyLimits = [] {
       limit("energy", "energy in one second", &L::energy, 0.02, "J",
             "Largest energy that the motors may give in one second."),
       limit("range", "part of the range", &L::range, 0.1, "-",
-            "Share of each joint's range, around its middle, in which the motors give their full "
-            "force."),
+            "Share of each joint's range, around its middle, in which the force is not reduced."),
   };
 }();
 // Clamps to the allowed range; NaN becomes the default.

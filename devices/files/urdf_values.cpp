@@ -174,8 +174,8 @@ class Own {
     if (text == nullptr) return std::nullopt;
     const auto found = numbers_in<3>(text);
     if (!found || found->norm() > kMostGravity) {
-      refuse(fmt::format("gravity \"{}\"; needed: X Y Z in m/s^2, together at most {}", text,
-                         kMostGravity));
+      refuse(fmt::format("gravity \"{}\"; needed: X Y Z in m/s^2, with a length of at most {}",
+                         text, kMostGravity));
     }
     return Vec3(*found);
   }
@@ -268,12 +268,12 @@ std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places) {
     if (each->ValueStr() == "joint") out.InsertEndChild(joint_of(*each, guessed));
   }
   if (!guessed.unlimited.empty()) {
-    places.warn(fmt::format("both limits are zero: {}; Limpid assumes no limits",
+    places.warn(fmt::format("all values in <limit> are zero: {}; Limpid assumes no limits",
                             fmt::join(guessed.unlimited, ", ")));
   }
   if (!guessed.fixed.empty()) {
     places.warn(
-        fmt::format("joints that slide without a <limit>: {}; these joints are held still; with a "
+        fmt::format("sliding joints without a <limit>: {}; these joints are held still; with a "
                     "<limit> they can move",
                     fmt::join(guessed.fixed, ", ")));
   }

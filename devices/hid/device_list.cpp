@@ -103,7 +103,7 @@ constexpr std::string_view kKey = "inverse3";
 
 constexpr DeviceKind kInverseKind{.key = "inverse3",
                                   .name = "Haply Inverse3",
-                                  .use = "moves its tip in three directions; gives force",
+                                  .use = "has a tip that moves in three directions; gives force",
                                   .pushes = true,
                                   .arm = "inverse3.urdf",
                                   .service = true};

@@ -97,7 +97,7 @@ std::string other_frame(const json& config, const json& workspace) {
   }
   if (moved(at(config, "mount")) || moved(workspace)) {
     return "a mount or a workspace that is shifted, rotated or scaled; needed: no shift, no "
-           "rotation, no scale";
+           "rotation, no scaling";
   }
   return {};
 }

@@ -71,8 +71,7 @@ std::int64_t to_ticks(const ReportField& field, double seconds) {
   if (lasts > kMostTimes * seconds) {
     throw HidError(
         fmt::format("the force-feedback joystick's shortest effect lasts {:.3g} ms; needed: at "
-                    "most {:.3g} ms, so that a "
-                    "force that nobody renews ends by itself",
+                    "most {:.3g} ms, so that a force that nobody renews ends by itself",
                     1e3 * lasts, 1e3 * kMostTimes * seconds));
   }
   return static_cast<std::int64_t>(taken);
@@ -114,8 +113,8 @@ PidReports::PidReports(ReportDescriptor descriptor) : descriptor_(std::move(desc
   if (!descriptor_.find(kFeature, kTypeConstantForce, kCreateNewEffect)) {
     throw HidError(
         "the force-feedback joystick has no Create New Effect report with constant force: the "
-        "computer must manage its memory, or it cannot give a constant force; this is not "
-        "supported");
+        "computer must manage the joystick's memory, or the joystick cannot give a constant force; "
+        "this is not supported");
   }
   need(kFeature, kBlockIndex, kBlockLoad, "PID Block Load");
   need(kFeature, kLoadSuccess, kBlockLoad, "Block Load Status");

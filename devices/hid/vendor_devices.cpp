@@ -30,12 +30,12 @@ using nlohmann::json;
 constexpr std::chrono::seconds kLongestList{15};
 constexpr std::size_t kMostText = 64 * 1024;
 
-#define KIND(key_, name_, maker, ...)                                 \
-  DeviceKind{.key = #key_,                                            \
-             .name = name_ " device",                                 \
-             .use = "moves its tip in three directions; gives force", \
-             .pushes = true,                                          \
-             .arm = #key_ ".urdf",                                    \
+#define KIND(key_, name_, maker, ...)                                        \
+  DeviceKind{.key = #key_,                                                   \
+             .name = name_ " device",                                        \
+             .use = "has a tip that moves in three directions; gives force", \
+             .pushes = true,                                                 \
+             .arm = #key_ ".urdf",                                           \
              .service = true},
 constexpr std::array kKinds{LIMPID_VENDORS(KIND)};
 #undef KIND

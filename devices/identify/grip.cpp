@@ -361,7 +361,7 @@ class GripFit {
 
 // Reason why a record cannot be judged; empty if it can.
 std::string unfit(const GripRecord& record) {
-  if (!record.begun()) return "the stiffness of the grip was not measured";
+  if (!record.begun()) return "the grip was not measured";
   if (record.duration() < GripProbe::kSettle + GripProbe::kMeasured) {
     const std::string why =
         record.ended_by() != ForceState::on

@@ -101,7 +101,7 @@ std::span<const unsigned char> GltfAccessor::view(int buffer_view) {
 
 void GltfAccessor::take(std::size_t bytes) {
   if (bytes > kMostOwnBytes - own_bytes_)
-    refuse("has more than 512 MiB in compressed, partly filled or empty accessors");
+    refuse("has more than 512 MiB in compressed, sparse or empty accessors");
   own_bytes_ += bytes;
 }
 

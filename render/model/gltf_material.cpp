@@ -172,7 +172,7 @@ int GltfMaterials::texture(const Info& info, bool srgb, GltfMaterial& to, bool& 
     set = static_cast<int>(std::clamp(number(extension->second, "texCoord", set), -1.0, 99.0));
   }
   if (placed && (set != to.uv_set || !move.matrix().isApprox(to.uv_move.matrix()))) {
-    warn("an image texture that has its own coordinates is not shown");
+    warn("a texture that has its own coordinates is ignored");
     return -1;
   }
   const auto& texture = file_.at(source_.gltf.textures, info.index, "texture");

@@ -95,9 +95,9 @@ std::vector<unsigned char> pack_gltf(std::span<const unsigned char> bytes, const
   gltf["buffers"] = json::array({{{"byteLength", all.size()}}});
   Bytes out = glb_bytes(gltf.dump(), all);
   if (out.size() > kLargestModelFiles) {
-    throw std::runtime_error(name +
-                             ": is together with the files it refers to larger than the limit of " +
-                             std::to_string(kLargestModelFiles >> 20) + " MiB");
+    throw std::runtime_error(name + ": is larger than the limit of " +
+                             std::to_string(kLargestModelFiles >> 20) +
+                             " MiB, together with the files it refers to");
   }
   return out;
 }

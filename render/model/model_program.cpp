@@ -77,8 +77,7 @@ void follow(int lines, Following& following, const LoadProgress& progress) {
     // The limit counts time on the wall: a program that waits takes no processor time.
     const std::chrono::seconds most{kPatience + 20 * following.limits.seconds};
     if (Clock::now() - begun > most) {
-      following.error =
-          "cannot be read: the program that reads the model did not answer for too long";
+      following.error = "cannot be read: the program that reads the model did not answer in time";
       return;
     }
     pollfd waiting{lines, POLLIN, 0};

@@ -290,7 +290,7 @@ class Analyze(SystemTest):
         self.assertEqual(limpid("run", "--duration", "0.5", "--record", out).status, 0)
         found = self.analyze("--grip-of", out)
         self.assertEqual((found["measured_grip"]["known"], found["measured_grip"]["why_not"]),
-                         (False, "the stiffness of the grip was not measured"))  # fmt: skip
+                         (False, "the grip was not measured"))  # fmt: skip
         self.assertIsNone(found["grip"])
         short = limpid("run", "--measure-grip", "--duration", "5")
         self.assertEqual(short.status, 2)

@@ -140,7 +140,7 @@ class Look(unittest.TestCase):
                 self.assertGreater(found[key], 1.5, key)
             self.assertGreater(found["no_force_s"][1], 1.5)
             text = limpid("devices", "look", "socket:played", "--record", self.out, "--force", "--seconds", "1").out
-            for said in ("pressed: 1, 3", "a button on the device", "not calibrated for", "nobody holds the switch",
+            for said in ("pressed: 1, 3", "a button on the device", "not calibrated for", "nobody held the switch",
                          "25 % of the hottest", "turret [rad]", "not checked yet", "got no force"):
                 self.assertIn(said, text)
 

@@ -128,7 +128,7 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
   const bool over = !soft && tip_.scene > mine.stiffness;
   read_out("stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
            over ? fmt::format("The object is too stiff: the coupling {} renders well only up to "
-                              "{:.0f} N/m here. Limit: {}.",
+                              "{:.0f} N/m here. Reason for the limit: {}.",
                               info(p.kind).key, mine.stiffness, mine.bound)
                 : "",
            soft ? "The hand feels a softer wall, because this coupling's spring lies between hand "

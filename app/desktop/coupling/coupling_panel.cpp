@@ -330,7 +330,7 @@ std::vector<Share> shares_of(const CouplingReading& now, const LawInfo& law) {
              "The reserve is low. The energy account reduces the wall's force, so that the energy "
              "given stays limited. Softer walls, a finer encoder or a known delay (model.delay) "
              "keep the reserve high.",
-             "Share of the coupling's force: 100 % unless the reserve is low. While the reserve is "
+             "Share of the wall's force: 100 % unless the reserve is low. While the reserve is "
              "low the proxy separates from the device."},
             {"Damping removed", now.damping_governor,
              "The reserve is low. The law cancels a smaller part of the device's damping.",
@@ -340,7 +340,7 @@ std::vector<Share> shares_of(const CouplingReading& now, const LawInfo& law) {
              "no torque until the hand has given energy back. Switching the force on again, or "
              "starting the loop again, fills the account. A known delay (model.delay) or a lower "
              "stiffness avoids this loss of torque.",
-             "100 % unless the hand received nearly 5 mJ more energy than the hand gave"}};
+             "Share of all torque: 100 % unless the hand received nearly 5 mJ more than it gave"}};
   }
   std::vector<Share> all;
   if (law.torque_share != nullptr) {
@@ -451,7 +451,7 @@ void draw_unsolved(const CouplingReading& now) {
              "at their limit. The proxy stood still for each such tick, which is passive. Softer "
              "walls, fewer walls at a time, less friction or stronger motors avoid such ticks.");
   draw_count("Contact points left out", now.left_out,
-             "Objects touch at more points than the loop can compute. At the points ignored, the "
+             "Objects touch at more points than the loop can compute. At the points left out, the "
              "objects do not push and may sink into each other. To avoid this error, use fewer "
              "objects that lie on each other.");
   draw_count("Ticks in which Limpid held objects still", now.stood_still,

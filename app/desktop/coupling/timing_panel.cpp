@@ -29,8 +29,8 @@ void draw_late_ticks(const LoopStatus& status, bool motors) {
            "Ticks that began more than 0.2 ms after their deadline");
   read_out("missed", of_all(status.missed, status.ticks),
            status.missed > status.ticks / 100
-               ? "More than 1 % of the ticks began later than a tick's length. Close other "
-                 "programs, or grant real-time priority (rtkit, or an rtprio limit)."
+               ? "More than 1 % of the ticks began more than one tick late. Close other programs, "
+                 "or grant real-time priority (rtkit, or an rtprio limit)."
                : "",
            words.missed);
   read_out("slipped", of_all(status.slipped, status.ticks),
@@ -179,7 +179,8 @@ void DeviceTiming::draw_cost(const DevicePace::Figures& pace, const ArmDescripti
   read_out("passive in any hand",
            pair(every_hands_wall(now_.tip, T, now_.loop.delay), prompt_.every_hand), {},
            "b_d / (T/2 + delay) is the stiffest wall that a plain spring can render and still be "
-           "passive in every hand. T is the longer time of tick and reading.");
+           "passive in every hand. T is the tick or the time between two readings, whichever is "
+           "longer.");
 }
 
 }  // namespace limpid

@@ -41,7 +41,7 @@ void Tuning::toggle_twin() {
   notices_.say(before == 1
                    ? "Two couplings on one hand. The tabs choose the coupling that the sliders set."
                : before == 2 ? "The twin (second run) has ended. Key B starts the twin again."
-                             : "Only the first run is left. B starts a second run again.");
+                             : "Only the first run is left. Key B starts a second run again.");
 }
 
 void Tuning::add_lane() {

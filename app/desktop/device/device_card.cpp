@@ -174,9 +174,8 @@ void draw_force(const LiveStage& live, const Parameters& p, StepState state) {
   const bool in_place = loop.device_in_place();
   begin_step(state, "Force", in_place ? explain(loop.snapshot().force_state) : "");
   tooltip(
-      "Force is off until the hand holds the device and Key F switches the force on. The force "
-      "then fades "
-      "in.");
+      "Force is off until the hand holds the device and you switch the force on with key F. The "
+      "force then fades in.");
   const std::string words = in_place ? device_words(loop.snapshot().reading) : std::string();
   if (!words.empty()) ImGui::TextWrapped("%s", words.c_str());
   const std::string warm = warm_text(live.stage().arm(), loop.taken(p), loop.layout(), live.row());

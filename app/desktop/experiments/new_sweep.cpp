@@ -299,7 +299,7 @@ void NewSweepDialog::draw(bool& open, const SweepBasis& basis, SweepController& 
     const float em = ImGui::GetFontSize();
     ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthFixed, kLabels * em);
     ImGui::TableSetupColumn("control", ImGuiTableColumnFlags_WidthStretch);
-    label("Vary", "The setting from left to right of the map");
+    label("Vary", "The setting on the map's horizontal axis");
     choose_field(first_, "##first", false);
     draw_values(first_, "first");
     label("and", "The setting on the map's vertical axis, if there is a second setting");

@@ -539,7 +539,7 @@ void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
   } else if (sweep.build != hex(build_digest())) {
     ImGui::TextColored(
         colour_vector(colours.broken),
-        "This table is of another build of limpid (%s): a point run again may differ.",
+        "This table is from another build of limpid (%s): a point run again may differ.",
         sweep.build.c_str());
   } else {
     ImGui::TextColored(colour_vector(colours.muted),

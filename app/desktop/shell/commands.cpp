@@ -221,7 +221,7 @@ std::string no_question(const Desktop& d) {
 }
 
 std::string nothing_kept(const Desktop& d) {
-  return d.kept.any() ? "" : "There is no scene whose changes were kept.";
+  return d.kept.any() ? "" : "There is no automatically saved scene.";
 }
 
 std::string nothing_written(const Desktop& d) {
@@ -406,8 +406,8 @@ constexpr std::array kCommands{
     row("object.scale", "Scale", "Edit", "S", "", begin_transform<TransformKind::scale>,
         {.reach = Reach::selection, .why_not = cannot<TransformKind::scale>}),
     row("object.along_x", "Along x alone", nullptr, "X",
-        "during the move: only along one axis; Ctrl: in whole steps; click or Enter accepts the "
-        "move, Esc cancels it",
+        "during such a change: only along one axis; Ctrl: in whole steps; click or Enter accepts "
+        "the change, Esc cancels it",
         [](Desktop& d) { d.transform.lock(0); }, {.reach = Reach::transform}),
     row("object.along_y", "Along y alone", nullptr, "Y", "",
         [](Desktop& d) { d.transform.lock(1); }, {.reach = Reach::transform}),
@@ -528,8 +528,8 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.tuning.toggle_twin(); },
         {.why_not = [](const Desktop& d) { return d.live.why_lanes_are_fixed(); },
          .checked = [](const Desktop& d) { return d.settings.lanes.count > 1; }}),
-    row("session.add_run", "One more run with the same motion of the hand", "Session", "Ctrl+B",
-        "one more coupling on the same hand, up to three couplings",
+    row("session.add_run", "One more run with the same hand", "Session", "Ctrl+B",
+        "one more coupling on the same hand, at most three in all",
         [](Desktop& d) { d.tuning.add_lane(); }, {.why_not = why_no_more_runs}),
     row("session.drop_run", "One run less", "Session", "Ctrl+Shift+B",
         "end the last of several runs on the same hand", [](Desktop& d) { d.tuning.drop_lane(); },
@@ -593,9 +593,9 @@ constexpr std::array kCommands{
         {.reach = Reach::question, .why_not = no_question, .blind = true}),
     row("scene.open_kept", "Open the automatically saved scene", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.world.open_scene(d.kept.take()); }, {.why_not = nothing_kept}),
-    row("scene.leave_kept", "Leave the scene that was kept in the gallery", nullptr, nullptr,
+    row("scene.leave_kept", "Leave the automatically saved scene in the gallery", nullptr, nullptr,
         nullptr, [](Desktop& d) { d.kept.leave(); }, {.why_not = nothing_kept}),
-    row("scene.discard_kept", "Discard the scene that was kept", nullptr, nullptr, nullptr,
+    row("scene.discard_kept", "Discard the automatically saved scene", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.kept.discard(); }, {.why_not = nothing_kept}),
     row("help.manual", "Manual", "Help", nullptr, nullptr, open_manual),
     row("help.story", "Play the story", "Help", nullptr, nullptr, play_story),

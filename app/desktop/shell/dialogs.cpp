@@ -297,9 +297,9 @@ DrawDialog preset_list(Desktop& d) {
       d, d.tuning.presets,
       {.title = "Presets",
        .what = "preset",
-       .help = "Each preset has a name and contains a coupling and its gains. With several runs, a "
-               "preset belongs to the run that the sliders set. Ctrl+Z brings back the earlier "
-               "settings."},
+       .help = "Each preset has a name and contains a coupling and its gains. With several runs, "
+               "only the run that the sliders set is saved or changed. Ctrl+Z brings back the "
+               "earlier settings."},
       [](Desktop& desktop, const std::string& name) { desktop.tuning.use_preset(name); },
       [](Desktop& desktop) { return preset_text(desktop.tuning.edited()); });
 }

@@ -64,8 +64,8 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
          "come back when that program ends."});
   }
   if (!pace.empty()) {
-    parts.push_back(
-        {pace, colours.accent, "Stops only the simulation; the control loop keeps running."});
+    parts.push_back({pace, colours.accent,
+                     "Pauses or slows only the simulation; the control loop keeps running."});
   }
   parts.push_back({stopped ? "loop stopped" : fmt::format("{:.0f} Hz", status.rate),
                    stopped ? colours.broken : colours.muted, status.failure});

@@ -328,8 +328,9 @@ void World::take_up_set_aside(const ArmDescription& arm) {
   const SetAside& waiting = *d_.document.waiting();
   auto scene = Document::scene_for(arm, waiting);
   if (!scene) {
-    throw std::runtime_error(fmt::format("the next scene, {}, is made for a different arm than {}",
-                                         fs::path(waiting.file).filename().string(), arm.name));
+    throw std::runtime_error(
+        fmt::format("the scene that was open before, {}, is made for a different arm than {}",
+                    fs::path(waiting.file).filename().string(), arm.name));
   }
   open(arm, std::move(scene->document), std::move(scene->models), nullptr, !waiting.unsaved);
   d_.document.set_file(waiting.file);

@@ -40,9 +40,9 @@ constexpr const char* kConventions =
     "change a dataset, delete /check.";
 
 constexpr const char* kBodyConventions =
-    " /objects has the objects that move, in the order of the attribute names. The position of an "
-    "object is the position of its centre of mass. Its rotation is a quaternion w, x, y, z from "
-    "its own frame to the frame of the root link.";
+    " /objects has the objects that move, in the order in which the attribute 'names' lists them. "
+    "The position of an object is the position of its centre of mass. Its rotation is a quaternion "
+    "w, x, y, z from its own frame to the frame of the root link.";
 
 void write_arm(hid_t root, const SessionInfo& info, const std::filesystem::path& file) {
   std::vector<std::string> types;

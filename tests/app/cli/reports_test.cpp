@@ -76,7 +76,7 @@ TEST(LookReport, SaysInLinesWhatWasSeen) {
         "1.0[0-9] ms",
         "turns .rad. +0 to 0.4 +-0.5 to 0.25 +0.1 +0.001 ",
         "range +turns left the range that the device declares\n", "buttons +pressed: 1, 3\n",
-        "hand +nobody holds the switch for 0.25 s\n", "calibration +not calibrated for 0.25 s\n",
+        "hand +nobody held the switch for 0.25 s\n", "calibration +not calibrated for 0.25 s\n",
         "fault +reported for 0.10 s\n", "device.s force off +0.50 s: ",
         "warmth +at most 50 % of the hottest motor.s thermal limit"}) {
     EXPECT_THAT(text, ContainsRegex(line));

@@ -149,9 +149,9 @@ TEST_F(Work, OfAnExperimentTakesAnArm) {
 
 TEST_F(Work, OfAnExperimentSaysWhichArmItDoesNotTake) {
   for (const auto& [words, why] :
-       {std::pair(
-            std::vector<std::string>{"robust", "--device", "touch.urdf"},
-            "robust: accepts no --arm, because it has arms of its own: an ideal arm and a Touch"),
+       {std::pair(std::vector<std::string>{"robust", "--device", "touch.urdf"},
+                  "robust: accepts no other arm or settings, because it has arms of its own: an "
+                  "ideal arm and a Touch"),
         {{"zwidth", "--device", "touch.urdf", "--readings"}, "zwidth: takes no --readings"},
         {{"passivity", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
         {{"all", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},

@@ -75,10 +75,9 @@ TEST(ExperimentArm, MovesAsTheBuiltInOneIfItsJointsDo) {
 TEST(WhyNot, NamesTheExperimentAndTheReason) {
   const ExperimentArm touch = touch_with_readings();
   EXPECT_EQ(why_not(experiment("coordination"), touch), "");
-  EXPECT_THAT(
-      why_not(experiment("robust"), touch),
-      HasSubstr(
-          "robust: accepts no --arm, because it has arms of its own: an ideal arm and a Touch"));
+  EXPECT_THAT(why_not(experiment("robust"), touch),
+              HasSubstr("robust: accepts no other arm or settings, because it has arms of its own: "
+                        "an ideal arm and a Touch"));
   EXPECT_THAT(why_not(experiment("zwidth"), touch), HasSubstr("zwidth: takes no --readings"));
   ExperimentArm exact = touch;
   exact.readings = false;

@@ -147,7 +147,7 @@ TEST(FiguresOf, LightnessSortTheProposedLawByItsEta) {
 // All lines shake with the same speed, 0.5 mm/s, at whole multiples of 0.2 Hz.
 TEST(FiguresOf, ObserverShowItsResponseAtThreeGains) {
   const Made made("observer");
-  const std::string title = "Estimated divided by true human torque, heaviest mode (lines: theory)";
+  const std::string title = "Estimated / true human torque, heaviest mode (lines: theory)";
   std::size_t at = 0;
   for (const double alpha : {0.0035, 0.035, 0.35}) {
     const Kept kept = made.kept(fmt::format("alpha-{:.3g}", alpha));
@@ -258,8 +258,7 @@ TEST(FiguresOf, TransparencyShowMeasurementOnTheory) {
   }
   expect_on(made.curve(touch, "the wall alone"),
             [](double f) { return 600 * 0.19 * 0.19 / (kTwoPi * f); });
-  const std::string scaling =
-      "Impedance in free motion, divided by the impedance at eta = 1 (lines: theory)";
+  const std::string scaling = "Impedance in free motion / impedance at eta = 1 (lines: theory)";
   expect_on(made.curve(scaling, "eta"), [](double eta) { return eta; });
   for (const Series& s : made.panel(scaling).series) {
     if (s.style != Series::Style::points) continue;
@@ -437,7 +436,7 @@ TEST(FiguresOf, DropFallFreelyUntilTheTip) {
     EXPECT_GT(hardest, 9.81 * 0.05) << "harder than the block's weight";
   }
   const std::string force = "Force on the tip, K_o = 2000 N/m",
-                    beyond = "Energy to the human minus the energy of the block; block of 2000 N/m";
+                    beyond = "Energy to the human minus the block's energy, K_o = 2000 N/m";
   for (const char* law : {"predictive", "proposed", "standard"}) {
     const Kept kept = made.kept(fmt::format("{}-2000", law));
     EXPECT_STREQ(name(kept.p.kind), law);

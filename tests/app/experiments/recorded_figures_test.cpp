@@ -391,7 +391,7 @@ TEST(FiguresOf, FrictionShowItsDrags) {
   expect_over_time(made.curve(slip, "proxy"), rough,
                    [&](auto k) { return 1e3 * rough.tip(k, Column::proxy_position).y(); });
   const std::string taken =
-      "Energy that friction gave: work of the friction force, plus energy in the friction's spring";
+      "Energy that friction gave: work of its force plus energy in its spring";
   const auto& smooth = made.curve(taken, "smooth");
   expect_on(
       smooth, [](double) { return 0.0; }, 1e-6);
@@ -487,8 +487,7 @@ TEST(FiguresOf, SwitchingShowStopsAndTurns) {
                    [&](auto k) { return 1e3 * ours.one(k, Column::device_position, 0); });
   expect_over_time(made.curve(stop, "proxy x2"), ours,
                    [&](auto k) { return 1e3 * ours.one(k, Column::proxy_position, 0); });
-  const std::string gave =
-      "Energy that the joint's end stop gave minus the energy that was stored in the end stop";
+  const std::string gave = "Energy that the stop gave minus the energy stored in the stop";
   const Kept paper = made.kept("stop-20-proposed");
   expect_over_time(made.curve(gave, "proposed, 20 N m/rad"), paper,
                    [&](auto k) { return 1e6 * paper.one(k, Column::contact_gain); });

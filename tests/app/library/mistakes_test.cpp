@@ -106,10 +106,9 @@ TEST(DeviceLoop, SaysAStartOutsideOfTheRangeAndRefusesOneFarOutside) {
     const DeviceLoop far(slide(), std::array{-0.25});
     FAIL();
   } catch (const LoopError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "position: joint 1 has -0.25; needed: the arm's range of -0.2 to 0.2 m, or a tenth of it "
-        "beyond");
+    EXPECT_STREQ(error.what(),
+                 "position: joint 1 has -0.25; needed: in the arm's range of -0.2 to 0.2 m, or "
+                 "outside it by at most a tenth of the range");
   }
 }
 

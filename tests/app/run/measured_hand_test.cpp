@@ -58,7 +58,7 @@ TEST(MeasuredHand, IsNotThereWhereNobodyMeasured) {
   EXPECT_TRUE(plan.excitation.empty());
   const Session session = test::recorded(plan, dir / "a.h5");
   const Grip grip = recorded_grip(session, "a.h5");
-  EXPECT_EQ(unknown_text(grip), "not known: the stiffness of the grip was not measured");
+  EXPECT_EQ(unknown_text(grip), "not known: the grip was not measured");
   EXPECT_FALSE(judged(plan.arm, plan.parameters, plan.document.scene, grip).hands);
 }
 

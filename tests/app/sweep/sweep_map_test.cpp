@@ -222,7 +222,7 @@ theory = ["pr", "routh", "routh_compliant"]
 )");
   EXPECT_EQ(theory_label("pr"), "PR (25)");
   EXPECT_EQ(theory_label("routh"), "Routh, locked");
-  EXPECT_EQ(theory_label("routh_compliant"), "stability by Routh, proxy on its spring");
+  EXPECT_EQ(theory_label("routh_compliant"), "Routh, proxy on its spring");
   const Series pr = theory_line(theory, 0, theory.axes[0], "pr");
   const Series routh = theory_line(theory, 0, theory.axes[0], "routh");
   ASSERT_EQ(pr.points.size(), 81u);

@@ -387,7 +387,7 @@ TEST(GltfContent, SaysWhichTexturesAreLeftOut) {
   EXPECT_EQ(model.parts[0].material.normal, -1);
   EXPECT_EQ(model.parts[0].material.color, 0);
   EXPECT_EQ(model.warnings,
-            std::vector<std::string>{"an image texture that has its own coordinates is not shown"});
+            std::vector<std::string>{"a texture that has its own coordinates is ignored"});
   file = textured_square();
   file.more = R"(,"textures":[{"extensions":{"ACME_texture":{}}}],"materials":[{)"
               R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";

@@ -142,8 +142,7 @@ TEST(GltfLimits, RefusesZerosThatTakeHalfAGibibyte) {
   file.view(std::vector<float>(4));     // the file's own data
   const std::size_t many = 50'000'000;  // of 12 bytes
   file.attribute("POSITION", file.accessor(-1, 5126, "VEC3", many));
-  expect_part_refused(file.binary(),
-                      "more than 512 MiB in compressed, partly filled or empty accessors");
+  expect_part_refused(file.binary(), "more than 512 MiB in compressed, sparse or empty accessors");
 }
 
 TEST(GltfLimits, RefusesSeveralBuffersForOneBinaryChunk) {
