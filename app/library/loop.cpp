@@ -540,7 +540,7 @@ std::span<const double> SimulatedLoop::step(const Hand& hand) noexcept {
 SimulatedLoop::RunEnd SimulatedLoop::run(std::span<const double> path, double duration,
                                          const TakeRow& take) const {
   std::exception_ptr thrown;  // by the caller's own function
-  const RunEnd all = as_library([&]() -> RunEnd {
+  RunEnd all = as_library([&]() -> RunEnd {
     if (!take) throw LoopError("take: is empty; needed: a function that takes each row");
     if (!(duration >= 0) || !std::isfinite(duration)) {
       throw LoopError(fmt::format("duration: {} is not allowed; allowed: 0 s or more", duration));

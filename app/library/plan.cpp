@@ -14,6 +14,7 @@
 #include "app/run/shipped_files.h"
 #include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/session/session_units.h"
 #include "devices/files/toml_reader.h"
 #include "devices/files/urdf_file.h"
 

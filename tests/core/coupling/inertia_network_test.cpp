@@ -264,7 +264,9 @@ TEST(AddedMass, IsBoundedBesideAHeavyProxy) {
       const AddedMass added = added_mass(eta, 0, 0.001, ratio);
       EXPECT_LE((added.eta - 1) * ratio, 0.75 + 1e-12) << "eta " << eta << ", M2/M1 " << ratio;
       EXPECT_GT(added.eta, 1);
-      if ((eta - 1) * ratio <= 0.75 && eta <= 5) EXPECT_EQ(added.eta, eta);
+      if ((eta - 1) * ratio <= 0.75 && eta <= 5) {
+        EXPECT_EQ(added.eta, eta);
+      }
     }
     EXPECT_EQ(added_mass(0.5, 0, 0.001, ratio).eta, 0.5);
   }
