@@ -199,6 +199,7 @@ TEST(DeviceLoop, LooksAtNoPositionsThatAreNotFresh) {
   reading.elapsed = 1e-3;
   reading.fresh = false;
   for (int k = 0; k < 3; ++k) EXPECT_LT(loop.tick(reading)[0], -1) << "they are as they were";
+  EXPECT_EQ(loop.force_text(), "");
   for (int k = 0; k < 4; ++k) loop.tick(reading);
   EXPECT_EQ(loop.tick(reading)[0], 0) << "8 ms old";
   const std::array<double, 1> x{0.004};
