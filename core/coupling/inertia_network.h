@@ -16,7 +16,7 @@ struct InertiaShape {
   static constexpr double kZeta = 0.7;                           // damping ratio of the added mass
   static constexpr double kFastest = 2 * std::numbers::pi * 25;  // its largest edge [rad/s]
   static constexpr double kSlowest = 2 * std::numbers::pi * 2;
-  static constexpr double kOnProxy = 0.75;  // most mass added to a proxy, as a part of M1
+  static constexpr double kOnProxy = 0.5;  // most mass added to a proxy, as a part of M1
 };
 
 // Mass added to the inertia for eta above 1, and the edge up to which it moves along.
@@ -33,8 +33,8 @@ struct AddedMass {
 // instead. late: largest delay beyond the tick [ticks].
 //
 // The law adds mass to device and proxy alike, by the device's velocity alone. A proxy of `ratio` =
-// M2 / M1 to which about M1 is added swings against the device. So (eta - 1) ratio stays below
-// kOnProxy; no swinging was found up to 0.8, and much from 1 on.
+// M2 / M1 to which much of M1 is added swings against the device. So (eta - 1) ratio stays below
+// kOnProxy: no swinging was found up to 0.5, and some from 0.75 on.
 AddedMass added_mass(double eta, int late, double T, double ratio);
 
 // Impedance that a network adds to an inertia of 1 kg m^2, without ticks: torque over velocity at w

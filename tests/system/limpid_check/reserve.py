@@ -16,7 +16,7 @@ from .urdf import Array
 # the ladder: inertances and resistances that make an inertia up to the band's edge
 _A1, _A2, _A3, _R, _R1 = 1.0081, 1.4799, 0.344, 1.3198, 0.05
 _FASTEST, _SLOWEST = 2 * np.pi * 25, 2 * np.pi * 2  # w_g of the added mass [rad/s]
-_ON_PROXY = 0.75  # most mass added to a proxy, as a part of M1
+_ON_PROXY = 0.5  # most mass added to a proxy, as a part of M1
 _GHOST_DAMPING = 0.7  # zeta
 # relative to beta, the added mass's damping for its inertia, times its delay
 _OWN, _LATE = 0.9, 0.35
@@ -106,7 +106,7 @@ class _Network:
 def _added_mass(s: Session) -> tuple[Array, Array]:
     """eta and w_g of every row (N,), where eta is above 1. Above w_g the added mass is a damper of
     beta = 2 zeta (eta - 1) w_g. Its delay bounds beta, and so w_g, or at last eta. A proxy of
-    `ratio` times the device's inertia bounds eta at 1 + 0.75/ratio."""
+    `ratio` times the device's inertia bounds eta at 1 + 0.5/ratio."""
     t = s.tick
     eta = np.minimum(s["/coupling/eta"], 1 + _ON_PROXY / s.number("proxy.inertia_ratio")[:, 0])
     _, most = s.possible_delays
