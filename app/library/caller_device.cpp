@@ -20,12 +20,11 @@ CallerDevice::CallerDevice(const ArmDescription& arm, bool guarded)
 
 void CallerDevice::take(std::span<const double> position, bool fresh, bool hand, bool fault,
                         double elapsed) noexcept {
-  const bool same = !fresh && reading_.count > 0;
-  whole_ = same || position.size() == unit_.size();
+  whole_ = whole(position, fresh);
   reading_.hand = hand;
   reading_.fault = fault;
   reading_.age += elapsed;
-  if (!whole_ || same) return;
+  if (!whole_ || repeated(fresh)) return;
   reading_.age = 0;
   ++reading_.count;
   for (std::size_t i = 0; i < unit_.size(); ++i) reading_.x[i] = position[i] / unit_[i];

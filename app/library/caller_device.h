@@ -11,6 +11,11 @@ class CallerDevice final : public Device {
  public:
   CallerDevice(const ArmDescription& arm, bool guarded);
 
+  // Whether a reading tells each joint's position. After the first, nothing is looked at of one
+  // that is not fresh.
+  bool whole(std::span<const double> position, bool fresh) const noexcept {
+    return repeated(fresh) || position.size() == unit_.size();
+  }
   // Takes a reading in, of positions [rad or m]; `elapsed`: time since the one before [s].
   void take(std::span<const double> position, bool fresh, bool hand, bool fault,
             double elapsed) noexcept;
@@ -22,6 +27,8 @@ class CallerDevice final : public Device {
   void stop() noexcept override;
 
  private:
+  bool repeated(bool fresh) const noexcept { return !fresh && reading_.count > 0; }
+
   DeviceTraits traits_;
   std::vector<double> unit_;    // of each joint's coordinate [rad or m]
   std::vector<double> torque_;  // [N m or N]

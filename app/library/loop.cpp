@@ -40,6 +40,9 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
 
 constexpr double kLongestPeriod = 0.004;  // of a loop with real motors [s]
 
+// Whatever is not told to be a simulation moves motors.
+bool moves_motors(const LoopOptions& options) { return options.motors != Motors::simulated; }
+
 bool finite_number(double x) { return std::isfinite(x); }
 
 // Returns the units of a column's parts as a text, once if all are the same.
@@ -180,7 +183,7 @@ Loop::State::State(LibraryPlan read, const LoopOptions& options)
     : plan(std::move(read.plan)),
       kinematics(plan.arm),
       notes(std::move(read.notes)),
-      real(options.motors != Motors::simulated),
+      real(moves_motors(options)),
       most_tip_force(options.limits.tip_force),
       layout(plan.layout()),
       units(layout, slides_of(plan.arm)),
@@ -405,7 +408,7 @@ std::uint64_t Loop::finish_recording() {
 DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> position)
     : Loop(as_library([&] {
         // A device is no arm that happens to be the default.
-        const bool real = options.motors != Motors::simulated;
+        const bool real = moves_motors(options);
         if (real && options.arm.empty() && options.arm_text.empty()) {
           throw LoopError(
               "arm: is missing; a device with real motors needs an arm file made for it");
@@ -435,10 +438,9 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
     s.measure(elapsed);
   }
   s.before = now;
-  const std::size_t positions = reading.position.size();
-  const bool same = s.real && !reading.fresh && s.ticks > 0;
-  const bool whole = same || positions == s.plan.arm.joints.size();
-  if (!whole) s.wrong_count = positions + 1;
+  const bool fresh = reading.fresh || !s.real;
+  const bool whole = s.device->whole(reading.position, fresh);
+  if (!whole) s.wrong_count = reading.position.size() + 1;
   const bool finite = std::ranges::all_of(reading.position, finite_number);
   if (!s.real) {
     s.refused = !finite ? "a reading is not finite" : timed ? nullptr : "a reading's time is wrong";
@@ -447,8 +449,7 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   if (wrong) s.device->stop();
   if (wrong && !s.real) return s.device->torque();  // a simulated device cannot trip
   const double passed = elapsed > 0 ? elapsed : T;
-  s.device->take(same ? std::span<const double>() : reading.position, reading.fresh, reading.hand,
-                 reading.fault || !timed, passed);
+  s.device->take(reading.position, fresh, reading.hand, reading.fault || !timed, passed);
   RigInput input{{s.tip(), 1}, s.force.take()};
   constexpr double kMostPeriods = 1e6;
   input.periods = static_cast<int>(std::clamp(std::round(passed / T), 1.0, kMostPeriods));

@@ -70,7 +70,7 @@ TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, con
 
 std::string less_added_text(const TipLimits& l, const Parameters& p) {
   const bool late = l.added.edge < added_mass(p.eta, 0, p.tick, p.inertia_ratio).edge;
-  const bool heavy = p.eta > 1 + InertiaShape::kOnProxy / p.inertia_ratio;
+  const bool heavy = p.eta > InertiaShape::most_eta(p.inertia_ratio);
   if (p.eta <= 1 || (!late && !heavy)) return {};
   std::string why;
   if (late) why = fmt::format("the torque may be {:.3g} ms late", 1e3 * p.tick * l.delay_most);

@@ -7,7 +7,7 @@ namespace limpid {
 AddedMass added_mass(double eta, int late, double T, double ratio) {
   using N = InertiaShape;
   if (!(eta > 1)) return {eta, N::kFastest};
-  eta = std::min(eta, 1 + N::kOnProxy / ratio);
+  eta = std::min(eta, N::most_eta(ratio));
   constexpr double kOwn = 0.9, kLate = 0.35;  // bounds of beta t [-]
   double most = kOwn / T;                     // bound of beta [rad/s]
   if (late > 0) most = std::min(most, kLate / (late * T));

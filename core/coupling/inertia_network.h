@@ -17,6 +17,9 @@ struct InertiaShape {
   static constexpr double kFastest = 2 * std::numbers::pi * 25;  // its largest edge [rad/s]
   static constexpr double kSlowest = 2 * std::numbers::pi * 2;
   static constexpr double kOnProxy = 0.5;  // most mass added to a proxy, as a part of M1
+
+  // Returns the largest eta beside a proxy of `ratio` = M2 / M1.
+  static constexpr double most_eta(double ratio) { return 1 + kOnProxy / ratio; }
 };
 
 // Mass added to the inertia for eta above 1, and the edge up to which it moves along.

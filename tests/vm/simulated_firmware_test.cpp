@@ -129,7 +129,7 @@ TYPED_TEST(Firmware, SaysWhenItsPoolIsFull) {
   PidJoystickOptions options = TypeParam::usual_options();
   options.capacity = 1;
   this->plug_in(options);
-  EXPECT_THAT(this->complaint(), HasSubstr("no room"));
+  EXPECT_THAT(this->complaint(), HasSubstr("no memory left"));
 }
 
 TYPED_TEST(Firmware, SaysWhenItCannotMakeAnEffect) {

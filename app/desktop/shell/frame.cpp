@@ -71,11 +71,7 @@ void Frame::draw() {
   });
   // Modal dialogs come last: ImGui fails on windows that appear after them in their first frame.
   dialogs_.draw(true, at.view);
-  Crowd crowd = view_.crowd();
-  for (const auto& card : {your_turn_.rect(), view_.hinted()}) {
-    if (card) crowd.kept_free.push_back(*card);
-  }
-  notices_.draw(desktop_.notices, at.view, below_banners_, crowd);
+  notices_.draw(desktop_.notices, at.view, below_banners_, view_.crowd_with_signs());
 }
 
 // Ends the lead of the keys with a click, a dialog, or the panel's end. Passes over panels that are

@@ -243,9 +243,8 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
   see_crowd(scene, view, beside, camera, rect);
   paint(view, *drawn_, kMainLane);
   if (settings.show_lens && !scene.split()) {
-    Crowd crowd = around_;
-    if (hinted_) crowd.kept_free.push_back(*hinted_);
-    magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height, scene.words}, crowd);
+    magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height, scene.words},
+                    crowd_with_signs());
   } else {
     magnifier_.hide();
   }
@@ -302,6 +301,12 @@ void ViewPanel::see_crowd(const ViewScene& scene, const ViewState& view,
   crowd_.kept_free.push_back(legend_box(rect));
   around_ = crowd_;
   around_.kept_free.insert(around_.kept_free.end(), scene.cards.begin(), scene.cards.end());
+}
+
+Crowd ViewPanel::crowd_with_signs() const {
+  Crowd crowd = around_;
+  if (hinted_) crowd.kept_free.push_back(*hinted_);
+  return crowd;
 }
 
 // Draws hints at the foot of the picture, or at its top if the tip is at the foot.

@@ -72,6 +72,8 @@ class ViewPanel {
   // Returns what cards over the pictures should not cover, as drawn last: tips, what is acted on,
   // objects that move.
   const Crowd& crowd() const { return crowd_; }
+  // Returns the same with the cards and hints.
+  Crowd crowd_with_signs() const;
   // Returns whether a drag from this pixel of the view pulls the hand.
   static bool near_tip(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel);
   // Returns the place of the hints of a first start in the last frame, if there were any.

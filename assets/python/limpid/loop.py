@@ -234,9 +234,7 @@ class Loop(_AnyLoop):
         (RunWarning; run.warnings)."""
         if is_path(hand):
             raise ArgumentError("hand: is a file; needed: rows of time [s], x, y, z [m] (limpid.run reads files)")
-        seconds = 0.0 if duration is None else number("duration", duration)
-        if seconds < 0:
-            raise ArgumentError(f"duration: {seconds:g} is not allowed; allowed: 0 s or more")
+        seconds = 0.0 if duration is None else _seconds("duration", duration)
         places, kept = self._places, list(range(self._width))
         if channels is not None:
             places, kept = {}, []
@@ -291,9 +289,7 @@ class DeviceLoop(_AnyLoop):
         """Runs the tick on a reading of each joint; returns the torques to be held until the next
         one. `fresh`: not the same reading as at the last tick. `hand`: the dead-man switch is closed.
         `fault`: the device is not well. `elapsed`: time since the last tick [s]; 0: measured here."""
-        seconds = elapsed if type(elapsed) in (int, float) and 0 <= elapsed < math.inf else number("elapsed", elapsed)
-        if seconds < 0:
-            raise ArgumentError(f"elapsed: {seconds:g} is not allowed; allowed: 0 s or more")
+        seconds = elapsed if type(elapsed) in (int, float) and 0 <= elapsed < math.inf else _seconds("elapsed", elapsed)
         try:
             count = len(position)
             if count == self.joints:
@@ -355,6 +351,13 @@ def _listed(name: str, given: Any) -> List[Any]:
     if isinstance(given, (str, bytes, Mapping)) or not isinstance(given, Iterable):
         raise ArgumentError(f"{name}: {given!s:.40} is not allowed; allowed: a list of numbers")
     return list(given)
+
+
+def _seconds(name: str, given: Any) -> float:
+    seconds = number(name, given)
+    if seconds < 0:
+        raise ArgumentError(f"{name}: {seconds:g} is not allowed; allowed: 0 s or more")
+    return seconds
 
 
 def _point(name: str, given: Iterable[float]) -> Tuple[float, float, float]:

@@ -210,6 +210,18 @@ TEST(DeviceLoop, LooksAtNoPositionsThatAreNotFresh) {
   EXPECT_THAT(begins.force_text(), HasSubstr("has 0 positions")) << "the first has to be there";
 }
 
+TEST(DeviceLoop, TakesEachReadingOfASimulationForFresh) {
+  DeviceLoop loop(slide(), std::array{0.0});
+  DeviceLoop::Reading reading;
+  reading.fresh = false;
+  for (const double x : {0.001, 0.002, 0.003}) {
+    const std::array<double, 1> there{x};
+    reading.position = there;
+    loop.tick(reading);
+    EXPECT_DOUBLE_EQ(loop.row("/device/position")[0], x);
+  }
+}
+
 TEST(DeviceLoop, TakesATimeThatCannotBeForAFault) {
   for (const double elapsed : {std::nan(""), -1e-3, std::numeric_limits<double>::infinity()}) {
     SCOPED_TRACE(elapsed);

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "app/run/simulate.h"
 #include "core/dynamics/arm.h"
 #include "tests/support/built_in.h"
+#include "tests/support/test_session.h"
 
 namespace limpid {
 namespace {
@@ -148,6 +151,38 @@ TEST(TipLimits, FeelInertiaAsEachLawMakesIt) {
   EXPECT_GT(felt_at_tip(CouplingKind::standard, p, l, 2).mass, 0.9 * m);
   EXPECT_GT(felt_at_tip(CouplingKind::predictive, p, l, 0.5).damping,
             l.felt.least_damping(p.eta, p.band));
+}
+
+TEST(TipLimits, SayWhatDelayAndProxyLeaveOfEta) {
+  Parameters p;
+  const auto said = [&] { return less_added_text(limits(p), p); };
+  p.eta = 5;
+  EXPECT_EQ(said(), "");
+  p.device_delay = 3;
+  EXPECT_EQ(said(), "5 up to 3.3 Hz, because the torque may be 3 ms late");
+  p.device_delay = 0;
+  p.inertia_ratio = 0.5;
+  EXPECT_EQ(said(), "2 up to 25 Hz, because the proxy has 0.5 times the device's inertia");
+  p.eta = 2;
+  EXPECT_EQ(said(), "");
+  p.eta = 0.5;
+  EXPECT_EQ(said(), "");
+}
+
+// In ten seconds on the table more added mass lets device and proxy swing.
+TEST(TipLimits, BoundTheMassAddedBesideAHeavyProxy) {
+  RunPlan plan = test::plan("table.toml", "touch.csv", 10);
+  plan.parameters.kind = CouplingKind::predictive;
+  plan.parameters.eta = 5;
+  plan.parameters.inertia_ratio = 0.5;
+  plan.parameters.hand_mass_at_tip = 0.05;
+  const RowLayout layout = plan.layout();
+  double highest = 0;
+  simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
+    highest = std::max(highest, layout.in(row, Column::energy_total)[0]);
+    return true;
+  });
+  EXPECT_LE(highest, 0.05e-3);
 }
 
 }  // namespace
