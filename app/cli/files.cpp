@@ -3,6 +3,7 @@
 #include <fmt/os.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -46,6 +47,7 @@ class RowsTold {
     }
     const auto arm = recorded_arm(about.info);
     layout_ = about.layout;
+    tick_ = about.info.tick;
     lanes_.assign(about.lanes(),
                   arm ? Summary(layout_, *arm) : Summary(layout_, about.info.slides));
     force_.emplace(layout_);
@@ -58,6 +60,9 @@ class RowsTold {
     }
     for (std::size_t at = 0; at < first.size(); at += stride, ++count_) {
       force_->add(first.subspan(at, stride));
+      const double late = layout_.in(first.subspan(at, stride), Column::wake_latency)[0];
+      late_ += late > tick_ ? 1 : 0;
+      latest_ = std::max(latest_, late);
       for (std::size_t i = 0; i < lanes_.size(); ++i) lanes_[i].add(rows[i].subspan(at, stride));
     }
     try {
@@ -68,9 +73,15 @@ class RowsTold {
   }
 
   std::uint64_t count() const { return count_; }
+  std::uint64_t late() const { return late_; }  // ticks that began after the next one was due
+  double latest() const { return latest_; }     // most that a tick began late [s]
   // Warnings computed from the rows, so that older recordings have them as well.
   std::vector<std::string> warnings() const {
     return watch_ ? watch_->warnings() : std::vector<std::string>();
+  }
+  // Time of each lane with a motor at its limit [s]; empty where that is not known.
+  std::vector<double> at_limit() const {
+    return watch_ ? watch_->at_limit() : std::vector<double>();
   }
   std::vector<const Summary*> lanes() const {
     std::vector<const Summary*> all;
@@ -79,11 +90,17 @@ class RowsTold {
   }
   std::string text(double tick) const {
     return fmt::format("length                   {:.3f} s\n", static_cast<double>(count_) * tick) +
-           numbers() + force_->text(tick) +
+           numbers() + at_limit_text(at_limit()) + late_text() + force_->text(tick) +
            fmt::format("contacts                 {}\n", contacts());
   }
 
  private:
+  // Says how many ticks of the loop came late; empty if none did.
+  std::string late_text() const {
+    if (late_ == 0) return {};
+    return fmt::format("late ticks               {} of {}, at most {:.3g} ms late\n", late_, count_,
+                       1e3 * latest_);
+  }
   std::string numbers() const {
     if (lanes_.size() == 1) return lanes_[0].text();
     std::vector<std::string> names{"first"};
@@ -103,8 +120,9 @@ class RowsTold {
   std::optional<SessionWatch> watch_;
   std::vector<Summary> lanes_;
   std::optional<ForceTally> force_;
-  std::uint64_t count_ = 0;
-  bool contacts_ = false;  // are recorded
+  std::uint64_t count_ = 0, late_ = 0;
+  double tick_ = 0, latest_ = 0;  // [s]
+  bool contacts_ = false;         // are recorded
 };
 
 // Settings of the first row; empty if this version does not know them.
@@ -156,9 +174,11 @@ void print_json(const InfoOptions& options, const Session& session, const RowsTo
                               {"joints", i.dof},
                               {"tick_s", i.tick},
                               {"seed", i.seed},
+                              {"late_ticks", told.late()},
+                              {"largest_lateness_s", told.latest()},
                               {"length_s", static_cast<double>(told.count()) * i.tick},
                               {"objects", i.bodies}};
-  json.update(runs_json(told.lanes(), warnings));
+  json.update(runs_json(told.lanes(), warnings, told.at_limit()));
   json["changes"] = nlohmann::ordered_json::array();
   for (const SettingChange& change : session.changes) {
     json["changes"].push_back({{"row", change.row}, {"setting", change.setting}});

@@ -92,7 +92,7 @@ int run_live(const LiveRunOptions& options) {
     return 1;
   }
   if (!options.picture.empty()) save_picture(options.picture, plan, summary.memorable());
-  fmt::print("{}", summary.text());
+  fmt::print("{}{}", summary.text(), at_limit_text(std::array{watch.at_limit()}));
   if (options.measure_grip) print_measured(measured(plan, grip));
   if (!options.record.empty()) fmt::print("recorded in {}\n", options.record);
   print_warnings(watch.cautions());
@@ -215,7 +215,7 @@ class RunLog {
     for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
       add_warnings(watches_[lane].warnings(), lane, warnings);
     }
-    return runs_json(summaries(), warnings);
+    return runs_json(summaries(), warnings, at_limit());
   }
   // Warnings besides that of an unstable run.
   std::vector<std::string> cautions() const {
@@ -233,13 +233,19 @@ class RunLog {
     return runs_[0].watch().lost() && !stable_.empty() ? stable_ : memorable_;
   }
   std::string text(const RunPlan& plan) const {
-    if (plan.beside.empty()) return runs_[0].text();
+    const std::string limits = at_limit_text(at_limit());
+    if (plan.beside.empty()) return runs_[0].text() + limits;
     std::vector<std::string> names;
     for (const Parameters& p : plan.settings()) names.push_back(short_name(p));
-    return Summary::beside(summaries(), names);
+    return Summary::beside(summaries(), names) + limits;
   }
 
  private:
+  std::vector<double> at_limit() const {
+    std::vector<double> all;
+    for (const RunWatch& watch : watches_) all.push_back(watch.at_limit());
+    return all;
+  }
   std::vector<const Summary*> summaries() const {
     std::vector<const Summary*> all;
     for (const Summary& run : runs_) all.push_back(&run);

@@ -41,9 +41,10 @@ ordered_json summary_json(const Summary& summary) {
 }
 
 ordered_json runs_json(const std::vector<const Summary*>& lanes,
-                       const std::vector<std::string>& warnings) {
+                       const std::vector<std::string>& warnings, std::span<const double> at_limit) {
   ordered_json runs = ordered_json::array();
   for (const Summary* lane : lanes) runs.push_back(summary_json(*lane));
+  for (std::size_t i = 0; i < at_limit.size(); ++i) runs[i]["at_limit_s"] = at_limit[i];
   return {{"runs", runs}, {"warnings", warnings}};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,10 @@ namespace limpid {
 // unstable.
 nlohmann::ordered_json summary_json(const Summary& summary);
 
-// The numbers of each lane, "runs", and warnings in sentences, "warnings".
+// The numbers of each lane, "runs", and warnings in sentences, "warnings". `at_limit`: time of each
+// lane with a motor at its limit [s]; empty where that is not known.
 nlohmann::ordered_json runs_json(const std::vector<const Summary*>& lanes,
-                                 const std::vector<std::string>& warnings);
+                                 const std::vector<std::string>& warnings,
+                                 std::span<const double> at_limit);
 
 }  // namespace limpid

@@ -94,7 +94,6 @@ FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
                     .y_range = std::pair(1e-4, 1e4)};
   Series more{"above theory", kContactInk, Series::Style::points, {}};
   Series less{"below theory", kProxyInk, Series::Style::points, {}};
-  Series measured{"no theory", kNeutralInk, Series::Style::points, {}};
   std::vector<std::string> groups;
   for (const BodyClaim& claim : claims) {
     if (claim.group.empty()) continue;
@@ -106,8 +105,7 @@ FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
     const double x = static_cast<double>(place) +
                      0.8 * ((static_cast<double>(before) + 0.5) / static_cast<double>(many) - 0.5);
     const double by = std::clamp(std::abs(claim.error()) / claim.limit, 1.2e-4, 0.8e4);
-    Series& series = !claim.unjudged.empty() ? measured : claim.error() > 0 ? more : less;
-    series.points.push_back({x, by});
+    (claim.error() > 0 ? more : less).points.push_back({x, by});
   }
   for (std::size_t i = 0; i < groups.size(); ++i) {
     panel.x_ticks.emplace_back(static_cast<double>(i), groups[i]);
@@ -115,7 +113,7 @@ FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
   const double end = static_cast<double>(groups.size()) - 0.5;
   panel.x_range = std::pair(-0.5, end);
   panel.series = {Series{"limit", kHandInk, Series::Style::dashed, {{-0.5, 1}, {end, 1}}}, more,
-                  less, measured};
+                  less};
   return panel;
 }
 
@@ -156,8 +154,8 @@ Outcome bodies(TrialRunner& lab) {
   outcome.figure.caption =
       "Bodies without an arm, simulated in the same ticks as in the loop. The first row shows the "
       "error of each check divided by the limit of the check, for two lengths of the tick. Errors "
-      "outside the range of the axis are drawn at its end. Grey points have no theory to compare "
-      "with. In the panel on rolling, solid curves are simulated and dashed curves are theory.";
+      "outside the range of the axis are drawn at its end. In the panel on rolling, solid curves "
+      "are simulated and dashed curves are theory.";
   return outcome;
 }
 

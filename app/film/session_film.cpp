@@ -192,7 +192,11 @@ class Shown {
         stage_.history.mark(time_at(k), label, std::string(change.key()));
       }
     }
-    stage_.follow(runs_.front().parameters);
+    for (std::size_t i = 0; i < runs_shown(); ++i) stage_.follow(runs_[i].parameters, i);
+    const std::vector<SettingsFrom>& again = again_.settings;
+    for (; next_again_ < again.size() && again[next_again_].row <= k; ++next_again_) {
+      stage_.follow(again[next_again_].parameters, runs_shown());
+    }
     if (runs_.size() == 1 || !order_.steps.empty() || !again_.rows.empty()) return;
     std::vector<Parameters> now;
     for (const Run& run : runs_) now.push_back(run.parameters);
@@ -232,6 +236,7 @@ class Shown {
   std::size_t row_;  // next row for the plots
   double seconds_;   // of a picture
   std::vector<Run> runs_;
+  std::size_t next_again_ = 0;  // settings of the re-run
   const StoryStep* step_ = nullptr;
   bool aimed_ = false;
 };

@@ -40,8 +40,10 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
 
 constexpr double kLongestPeriod = 0.004;  // of a loop with real motors [s]
 
-// Whatever is not told to be a simulation moves motors.
-bool moves_motors(const LoopOptions& options) { return options.motors != Motors::simulated; }
+// Whatever is not told to be a simulation moves real motors.
+LoopArm arm_of(const LoopOptions& options) {
+  return options.motors == Motors::simulated ? LoopArm::callers : LoopArm::real;
+}
 
 bool finite_number(double x) { return std::isfinite(x); }
 
@@ -129,7 +131,7 @@ LoopError::~LoopError() = default;
 struct Loop::State {
   static constexpr std::uint64_t kMeasured = 500;  // ticks
 
-  State(LibraryPlan read, const LoopOptions& options);
+  State(LibraryPlan read, const LoopOptions& options, LoopArm of);
 
   void begin(const RigStart& start);
   void step(const RigInput& input) noexcept;
@@ -156,7 +158,8 @@ struct Loop::State {
   std::vector<std::string> notes;
   std::optional<CallerDevice> device;  // of a DeviceLoop
   std::optional<Rig> rig;
-  bool real = false;          // motors of a device with a person's hand on it
+  LoopArm arm;
+  bool real;                  // motors of a device with a person's hand on it
   double most_tip_force = 0;  // of real motors [N]
   RowLayout layout;
   SessionUnits units;
@@ -179,11 +182,12 @@ struct Loop::State {
   bool recording = false;  // the recorder gets rows
 };
 
-Loop::State::State(LibraryPlan read, const LoopOptions& options)
+Loop::State::State(LibraryPlan read, const LoopOptions& options, LoopArm of)
     : plan(std::move(read.plan)),
       kinematics(plan.arm),
       notes(std::move(read.notes)),
-      real(moves_motors(options)),
+      arm(of),
+      real(of == LoopArm::real),
       most_tip_force(options.limits.tip_force),
       layout(plan.layout()),
       units(layout, slides_of(plan.arm)),
@@ -284,14 +288,14 @@ void Loop::set(const std::string& key_value) { set(std::span(&key_value, 1)); }
 void Loop::set(std::span<const std::string> key_values) {
   as_library([&] {
     Parameters changed = state_->plan.parameters;
-    for (const std::string& each : key_values) set_live(changed, each, state_->device.has_value());
+    for (const std::string& each : key_values) set_live(changed, each, state_->arm);
     state_->plan.parameters = changed;
   });
   state_->tell_recorder();
 }
 
 void Loop::set(std::string_view key, double value) {
-  as_library([&] { set_live(state_->plan.parameters, key, value, state_->device.has_value()); });
+  as_library([&] { set_live(state_->plan.parameters, key, value, state_->arm); });
   state_->tell_recorder();
 }
 
@@ -408,7 +412,8 @@ std::uint64_t Loop::finish_recording() {
 DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> position)
     : Loop(as_library([&] {
         // A device is no arm that happens to be the default.
-        const bool real = moves_motors(options);
+        const LoopArm arm = arm_of(options);
+        const bool real = arm == LoopArm::real;
         if (real && options.arm.empty() && options.arm_text.empty()) {
           throw LoopError(
               "arm: is missing; a device with real motors needs an arm file made for it");
@@ -419,8 +424,8 @@ DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> posit
                           "because force ends if no reading is fresh for 5 ms",
                           options.period, kLongestPeriod));
         }
-        auto state = std::make_unique<State>(read_plan(options, true), options);
-        state->device.emplace(state->plan.arm, state->real);
+        auto state = std::make_unique<State>(read_plan(options, arm), options, arm);
+        state->device.emplace(state->plan.arm, real);
         state->rig.emplace(state->plan.arm, state->plan.document.scene, &*state->device);
         state->rig->limit(limits_of(options.limits));
         state->begin(start_at(state->plan.arm, position, state->notes));
@@ -503,8 +508,8 @@ std::string DeviceLoop::force_text() const {
 
 SimulatedLoop::SimulatedLoop(const LoopOptions& options)
     : Loop(as_library([&] {
-        auto state = std::make_unique<State>(read_plan(options, false), options);
-        state->real = false;
+        auto state =
+            std::make_unique<State>(read_plan(options, LoopArm::own), options, LoopArm::own);
         state->rig.emplace(state->plan.arm, state->plan.document.scene);
         state->begin(rest_at(state->plan.arm, rest_tip(state->plan.arm)));
         return state;

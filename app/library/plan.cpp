@@ -72,15 +72,26 @@ Parameters chosen(const LoopOptions& options, Parameters base) {
   return base;
 }
 
-// Refuses settings of the simulated hand and arm where a person's hand and a device are.
-void refuse_simulated(std::string_view key, bool device) {
-  if (!device) return;
-  const char* whose = key.starts_with("hand.")    ? "hand"
-                      : key.starts_with("plant.") ? "arm"
-                                                  : nullptr;
-  if (whose == nullptr) return;
-  throw FieldError(
-      fmt::format("{}: belongs to the simulated {}, which a DeviceLoop does not have", key, whose));
+// Refuses settings of a simulation that this loop does not have: they would do nothing.
+void refuse_simulated(std::string_view key, LoopArm of) {
+  if (of == LoopArm::own) return;
+  constexpr std::array kOwn{"device.substeps", "device.gravity", "device.springs"};
+  const bool of_arm = key.starts_with("plant.") || std::ranges::find(kOwn, key) != kOwn.end();
+  if (of_arm || key.starts_with("hand.")) {
+    throw FieldError(
+        fmt::format("{}: belongs to the simulated {}, which a DeviceLoop does not have", key,
+                    of_arm ? "arm" : "hand"));
+  }
+  if (of != LoopArm::real) return;
+  if (key == "device.delay") {
+    throw FieldError(
+        "device.delay: delays simulated motors; model.delay tells the law how late real ones are");
+  }
+  if (key == "device.friction") {
+    throw FieldError(
+        "device.friction: belongs to simulated motors; the friction of a real device "
+        "stands in the arm's file");
+  }
 }
 
 // Says the damping [N m s/rad] as slides have it; empty without slides.
@@ -98,9 +109,9 @@ void refuse_fixed(const ParameterInfo& info) {
 
 }  // namespace
 
-LibraryPlan read_plan(const LoopOptions& options, bool device) {
+LibraryPlan read_plan(const LoopOptions& options, LoopArm of) {
   for (const std::string& setting : options.settings) {
-    refuse_simulated(key_of_setting(setting), device);
+    refuse_simulated(key_of_setting(setting), of);
   }
   LibraryPlan all;
   RunPlan& plan = all.plan;
@@ -110,7 +121,7 @@ LibraryPlan read_plan(const LoopOptions& options, bool device) {
   plan.models = build_meshes(plan.document);
   const Parameters asked = chosen(options, {});
   Parameters fit = fitted(plan.arm, asked);
-  if (device && std::isnan(asked.damping)) {
+  if (of != LoopArm::own && std::isnan(asked.damping)) {
     if (!std::isnan(fit.damping)) {
       all.notes.push_back(
           fmt::format("the arm's joints have no damping: gains are fitted as if they had {:.3g} N "
@@ -178,8 +189,8 @@ const ParameterInfo& setting_named(std::string_view key) {
   throw FieldError(fmt::format("{}: no such key; {}", key, meant_or(key, keys, "setting_list()")));
 }
 
-void set_live(Parameters& p, const std::string& key_value, bool device) {
-  refuse_simulated(key_of_setting(key_value), device);
+void set_live(Parameters& p, const std::string& key_value, LoopArm of) {
+  refuse_simulated(key_of_setting(key_value), of);
   Parameters changed = p;
   apply_setting(changed, key_value);
   for (const ParameterInfo& info : parameter_table()) {
@@ -188,8 +199,8 @@ void set_live(Parameters& p, const std::string& key_value, bool device) {
   p = changed;
 }
 
-void set_live(Parameters& p, std::string_view key, double value, bool device) {
-  refuse_simulated(key, device);
+void set_live(Parameters& p, std::string_view key, double value, LoopArm of) {
+  refuse_simulated(key, of);
   const ParameterInfo& info = setting_named(key);
   refuse_fixed(info);
   if (info.kind != FieldInfo::Kind::flag) return set_value(info, p, value);

@@ -66,7 +66,7 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   const auto stride = static_cast<std::size_t>(rig_->layout().stride());
   const std::size_t all = kMostLanes * stride;
   trace_ = std::make_unique<TraceRing>(trace_rows(all), all);
-  next_tick_ = drained_from_ = seen_dropped_ = gap_ = 0;
+  next_tick_ = drained_from_ = seen_dropped_ = gap_ = published_ = 0;
   before_gap_ = 0;
   rows_.assign(all, std::numeric_limits<double>::quiet_NaN());
   std::ranges::fill(row(kMainLane), 0.0);
@@ -335,6 +335,7 @@ void LiveLoop::follow_recorder(const Vec3& target) {
   Recorder* offered = offered_recorder_.exchange(nullptr, std::memory_order_acq_rel);
   if (offered == nullptr) return;
   recording_to_ = offered;
+  recorded_from_.store(published_, std::memory_order_relaxed);
   if (!std::exchange(path_runs_, true)) path_tick_ = 1;  // its first point is the first row's
   rig_->restart_here(parameters_, rebase_, target);
   for (FurtherLane& lane : beside_) lane.restart_here(target);
@@ -351,6 +352,7 @@ void LiveLoop::publish(const TickTiming& timing) {
   layout.in(row(kMainLane), Column::wake_latency)[0] = timing.wake_latency;
   layout.in(row(kMainLane), Column::compute)[0] = compute_;
   trace_->push(rows_);
+  ++published_;
   if (recording_to_ != nullptr) {
     recording_to_->push(std::span(rows_).first(recording_to_->stride()));
   }
@@ -366,6 +368,12 @@ void LiveLoop::publish(const TickTiming& timing) {
   snapshot.probing = probing_;
   snapshot.led = static_cast<double>(path_tick_) * parameters_.tick;
   snapshots_.publish();
+}
+
+std::uint64_t LiveLoop::recorded_row(std::uint64_t tick) const {
+  const std::uint64_t from =
+      recorded_from_.load(std::memory_order_relaxed) + recorder_->dropped_rows();
+  return std::min(tick > from ? tick - from : 0, recorder_->newest());
 }
 
 void LiveLoop::record(std::unique_ptr<Recorder> recorder) {

@@ -179,6 +179,9 @@ class LiveLoop {
   void record(std::unique_ptr<Recorder> recorder);
   bool recording() const { return recorder_ && !stopping_; }
   const Recorder* recorder() const { return recorder_.get(); }
+  // Returns the row of the recording nearest to a tick that drain() counts. Precondition: there is
+  // a recorder.
+  std::uint64_t recorded_row(std::uint64_t tick) const;
   // Notes a mark at a row of the recording. Errors: FileError if the text is too long.
   void mark(const Mark& mark) {
     if (recording()) recorder_->mark(mark);
@@ -245,9 +248,11 @@ class LiveLoop {
   std::atomic<Recorder*> offered_recorder_{nullptr};
   std::atomic<std::size_t> offered_lanes_{1};  // of the recorder that is offered
   std::atomic<bool> let_go_{false}, has_let_go_{false};
+  std::atomic<std::uint64_t> recorded_from_{0};  // tick of the recording's first row
 
   // Used by the loop alone.
   Recorder* recording_to_ = nullptr;
+  std::uint64_t published_ = 0;  // ticks, as drain() counts them
   std::unique_ptr<Rig> rig_;
   std::array<FurtherLane, kMostLanes - 1> beside_;
   DeviceSlot* slot_ = nullptr;

@@ -55,6 +55,27 @@ std::string short_text(double value) {
   return (value < 0 ? "\u2212" : "") + three_digits(std::abs(value));
 }
 
+// Writes a value for the margin, in a unit of the axis: with the decimals that the screen can show
+// and that there is room for.
+std::string end_text(const AxisMap& map, double unit, double value) {
+  const auto fits = [](const std::string& text) {
+    return text_size(Face::small, text).x <= end_label_width();
+  };
+  const double shown = value / unit;
+  if (!map.log) {
+    const double resolution = map.limits.span() / std::abs(unit) / 1000;
+    if (std::abs(shown) < resolution / 2) return "0";
+    for (int decimals = decimals_of(resolution); decimals >= 0; --decimals) {
+      if (std::string text = fixed_text(shown, decimals); fits(text)) return text;
+    }
+  }
+  std::string text = short_text(shown);
+  for (int digits = 2; digits > 0 && !fits(text); --digits) {
+    text = fmt::format("{}{:.{}g}", shown < 0 ? "\u2212" : "", std::abs(shown), digits);
+  }
+  return text;
+}
+
 std::string value_text(const PlotAxis& axis, const AxisMap& map, double value) {
   return number_text(axis, map, value) + " " + axis.unit;
 }
@@ -698,9 +719,8 @@ void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History
   for (const Curve& curve : spec.curves) {
     const auto value = static_cast<double>(history.value(curve.channel, row));
     if (!curve.visible || !std::isfinite(value)) continue;
-    const bool nothing = std::abs(value) < 1e-6 * frame.y.limits.span();  // beside the others
     lines.push_back({"",
-                     short_text(nothing ? 0 : value * spec.y.factor / std::pow(10.0, exponent)),
+                     end_text(frame.y, std::pow(10.0, exponent) / spec.y.factor, value),
                      colour_of(frame.palette, curve, law_at(history, curve, row)),
                      {0, frame.y_of(value)}});
   }

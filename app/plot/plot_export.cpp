@@ -352,10 +352,11 @@ class PlotDrawing {
   double column(double number) const { return x_at((number - first_column_) / columns_); }
 
   void bands() {
-    double line = 0;  // line of the names, from the top; each band has its own
+    double line = 0;  // line of the names, from the top; each band with names has its own
     for (const Band& each : spec_.bands) {
       double free_from = left_;
-      const double y = top_ + 15 + 14 * line++;
+      const double y = top_ + 15 + 14 * line;
+      bool labelled = false;
       const auto most = static_cast<double>(std::max<std::size_t>(2, each.names.size()) - 1);
       int before = -1;
       for (const BandStretch& stretch : band_stretches(each, history_, rows_)) {
@@ -381,7 +382,9 @@ class PlotDrawing {
         label(x, y, Anchor::start, palette_.text, name);
         free_from = x + wide + 8;
         room_.take({x, y - kLabelBase, wide + 8, kLabelLine});
+        labelled = true;
       }
+      line += labelled ? 1 : 0;
     }
   }
 

@@ -380,12 +380,13 @@ void for_stretches(const PlotFrame& frame, const Band& band, const History& hist
   }
 }
 
-// Draws the names of a band at `line`, counted from the top; each band has its own.
-void draw_names(const PlotFrame& frame, const Band& band, float line, const History& history,
+// Draws the names of a band at `line`, counted from the top. Returns whether there are any.
+bool draw_names(const PlotFrame& frame, const Band& band, float line, const History& history,
                 const std::vector<SampleIndex>& rows, LabelRoom& room) {
   const auto edges = static_cast<float>(std::max(1, band.lane + 1));
   float free_from = frame.area.min.x;
   int before = -1;
+  bool drawn = false;
   for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
     const std::string& name = band.names[static_cast<std::size_t>(now)];
     const ImVec2 label = text_size(Face::small, name);
@@ -402,7 +403,9 @@ void draw_names(const PlotFrame& frame, const Band& band, float line, const Hist
                      0.85f);
     free_from = x + label.x + 12 * frame.scale;
     room.take(ScreenRect{{x, y}, {free_from, y + label.y}}.box());
+    drawn = true;
   });
+  return drawn;
 }
 
 // Draws stripes from lower left to upper right; those of stretches side by side fit together.
@@ -634,7 +637,9 @@ void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& his
 void draw_band_names(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                      const std::vector<SampleIndex>& rows, LabelRoom& room) {
   float line = 0;
-  for (const Band& band : spec.bands) draw_names(frame, band, line++, history, rows, room);
+  for (const Band& band : spec.bands) {
+    line += draw_names(frame, band, line, history, rows, room) ? 1.0f : 0.0f;
+  }
 }
 
 void draw_menu_button(const PlotFrame& frame, const ScreenRect& button, bool pointed_at) {

@@ -282,7 +282,7 @@ void TraceChannels::put_tips(std::span<const double> row, std::span<double> into
   std::ranges::fill(into, std::numeric_limits<double>::quiet_NaN());
   if (!tips_) return;
   const DerivedColumns::Values known = tips_->of(DerivedColumns::from(layout_, row));
-  for (const std::size_t side : {0, 1}) {
+  for (std::size_t side = 0; side < 2; ++side) {
     const Vec3 &tip = known[2 * side], &velocity = known[2 * side + 1];
     std::ranges::copy(tip, into.begin() + static_cast<std::ptrdiff_t>(4 * side));
     into[4 * side + 3] = velocity.norm();
@@ -340,11 +340,12 @@ LaneOfHistory TraceChannels::lane(std::size_t lane) const {
           of(Column::device_position)};
 }
 
-bool TraceChannels::limited(std::span<const double> row, int joint) const {
-  return at_limit(layout_, row, limits_, joint);
+bool TraceChannels::limited(std::span<const double> row, int joint, std::size_t lane) const {
+  return at_limit(layout_, row, limits_of(lane), joint);
 }
 
-void TraceChannels::values(std::span<const double> row, std::span<double> into) const {
+void TraceChannels::values(std::span<const double> row, std::span<double> into,
+                           std::size_t lane) const {
   const auto at = [&](Column c) { return layout_.in(row, c); };
   const auto put = [&](Channel c, double value) { into[static_cast<std::size_t>(c)] = value; };
   const auto x1 = at(Column::device_position);
@@ -367,7 +368,7 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   put(Channel::human, torque(layout_.human_torque(row)));
   put(Channel::human_estimate, torque(at(Column::hand_torque_estimate)));
   put(Channel::contact, torque(at(Column::contact_torque)));
-  put(Channel::limited, any_at_limit(layout_, row, limits_) ? 1 : 0);
+  put(Channel::limited, any_at_limit(layout_, row, limits_of(lane)) ? 1 : 0);
   const auto rest = joints.subspan(x1.size());
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     rest[i] = shown(columns_[i].scaled, row[columns_[i].at]);
@@ -392,7 +393,7 @@ void TraceChannels::append(History& history, LaneRows rows) const {
   for (std::size_t lane = 0; lane * one < used.size(); ++lane) {
     const std::span<double> into = used.subspan(lane * one, one);
     if (lane < rows.size() && !rows[lane].empty() && !std::isnan(rows[lane][0])) {
-      values(rows[lane], into);
+      values(rows[lane], into, lane);
     } else {
       std::ranges::fill(into, std::numeric_limits<double>::quiet_NaN());
     }

@@ -1,6 +1,7 @@
 // Channels: the quantities that plots can show, from a row of the trace or computed from it.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -68,17 +69,21 @@ class TraceChannels {
   TraceChannels(const ArmDescription& arm, const RowLayout& layout,
                 const std::vector<std::string>& bodies);
 
-  // Sets the motors' largest torques from now on [N m]; before, no motor is ever limited.
-  void set_limits(std::vector<MotorLimit> limits) { limits_ = std::move(limits); }
-  // Returns whether the motor of a joint gives all it can in this row.
-  bool limited(std::span<const double> row, int joint) const;
+  // Sets the largest torques of a lane's motors from now on [N m]; before, no motor is ever
+  // limited. A lane whose limits were never set has those of the first.
+  void set_limits(std::vector<MotorLimit> limits, std::size_t lane = kMainLane) {
+    limits_[lane] = std::move(limits);
+  }
+  // Returns whether the motor of a joint gives all it can in this row of a lane.
+  bool limited(std::span<const double> row, int joint, std::size_t lane = kMainLane) const;
 
   int count() const { return static_cast<int>(infos_.size()); }
   std::span<const ChannelInfo> infos() const { return infos_; }
   // Finds a channel by its key; nothing if this arm has no such channel.
   std::optional<int> find(const std::string& key) const;
-  // Fills count() values.
-  void values(std::span<const double> row, std::span<double> into) const;
+  // Fills count() values of a lane's row.
+  void values(std::span<const double> row, std::span<double> into,
+              std::size_t lane = kMainLane) const;
   // Adds the same row of each lane that the history has room for; nothing is known of lanes whose
   // row is missing or begins with NaN.
   void append(History& history, LaneRows rows) const;
@@ -92,6 +97,9 @@ class TraceChannels {
   const DerivedColumns* tips() const { return tips_ ? &*tips_ : nullptr; }
 
  private:
+  std::span<const MotorLimit> limits_of(std::size_t lane) const {
+    return limits_[limits_[lane].empty() ? kMainLane : lane];
+  }
   void add_bodies(const std::vector<std::string>& names);
   void add_tips();
   void put_tips(std::span<const double> row, std::span<double> into) const;
@@ -107,7 +115,7 @@ class TraceChannels {
 
   std::vector<Place> columns_;
   std::vector<std::optional<SessionUnits::Scaled>> positions_;  // of each joint
-  std::vector<MotorLimit> limits_;
+  std::array<std::vector<MotorLimit>, kMostLanes> limits_;
   std::optional<DerivedColumns> tips_;
 };
 

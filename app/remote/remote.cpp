@@ -274,9 +274,9 @@ json Remote::newest(const Keys& keys) const {
   const auto rows = host_.rows();
   if (rows.empty()) throw RemoteError("row: the loop has not run a tick yet");
   std::vector<std::vector<double>> values;
-  for (const std::span<const double> row : rows) {
+  for (std::size_t lane = 0; lane < rows.size(); ++lane) {
     values.emplace_back(static_cast<std::size_t>(channels.count()));
-    channels.values(row, values.back());
+    channels.values(rows[lane], values.back(), lane);
   }
   json all = json::object();
   if (const auto names = keys.texts_if("channels", kMostSettings)) {
@@ -327,7 +327,7 @@ void Remote::row(LaneRows rows, std::uint64_t tick) {
     if (!std::exchange(worked_out, true)) {
       for (std::size_t i = 0; i < kMostLanes; ++i) {
         values_[i].resize(static_cast<std::size_t>(channels.count()));
-        if (runs(rows, i)) channels.values(rows[i], values_[i]);
+        if (runs(rows, i)) channels.values(rows[i], values_[i], i);
       }
     }
     if (f.last && tick > *f.last) f.dropped += (tick - *f.last) / f.every - 1;

@@ -276,7 +276,7 @@ json ServedSession::place() const {
 
 Answer ServedSession::mark(const Keys& keys) {
   const std::string text = noted(keys);
-  if (loop().recording()) loop().mark({loop().recorder()->newest(), text});
+  if (loop().recording()) loop().mark({loop().recorded_row(session_.tick()), text});
   return place();
 }
 

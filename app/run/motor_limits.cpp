@@ -24,7 +24,7 @@ bool at_limit(const RowLayout& layout, std::span<const double> row,
                                 layout.in(row, Column::compensation_torque)[j]);
   // A law that knows the limit asks for no more than that.
   const double most = limits[j].at(layout.in(row, Column::motor_warmth)[j]);
-  return given >= most * (1 - 1e-9) && asked >= given * (1 - 1e-9);
+  return most > 0 && given >= most * (1 - 1e-9) && asked >= given * (1 - 1e-9);
 }
 
 bool any_at_limit(const RowLayout& layout, std::span<const double> row,

@@ -25,7 +25,7 @@ struct MotorLimit {
 // Returns the limit of each motor: the parameters' one, or the arm's own where they leave it to the
 // arm.
 std::vector<MotorLimit> motor_limits(const ArmDescription& arm, const Parameters& p);
-// Returns whether the motor of a joint gives all it can in this row; never without limits.
+// Returns whether the motor of a joint gives all it can in this row; never without a motor.
 bool at_limit(const RowLayout& layout, std::span<const double> row,
               std::span<const MotorLimit> limits, int joint);
 // Returns whether any motor gives all it can in this row.

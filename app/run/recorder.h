@@ -54,6 +54,7 @@ class Recorder {
   std::size_t lanes() const noexcept { return lanes_; }
   std::uint64_t rows() const noexcept { return pushed_.load(std::memory_order_relaxed); }
   std::uint64_t dropped() const noexcept { return ring_.dropped() + lost_changes_.load(); }
+  std::uint64_t dropped_rows() const noexcept { return ring_.dropped(); }
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
   std::string error() const;                              // once failed
   bool is_locked() const { return writer_.is_locked(); }  // against other programs

@@ -11,14 +11,22 @@
 
 namespace limpid {
 
+// Settings from a row on.
+struct SettingsFrom {
+  std::uint64_t row = 0;
+  Parameters parameters;
+};
+
 // Rows of a re-run.
 struct RerunRows {
   ArmDescription arm;
-  LargeVector<double> rows;  // as many as the session's; none if it was stopped
-  RunEnd end;                // after a divergence the last row is repeated
-  std::string name;          // "re-run: predictive", by what was changed
-  std::string recorded;      // "recorded: standard", the first run's name beside it
-  std::string note;          // why it may differ from the recording; for people
+  LargeVector<double> rows;            // as many as the session's; none if it was stopped
+  RunEnd end;                          // after a divergence the last row is repeated
+  std::vector<SettingsFrom> settings;  // from the first row on
+  double at_limit = 0;                 // time in which a motor was at its limit [s]
+  std::string name;                    // "re-run: predictive", by what was changed
+  std::string recorded;                // "recorded: standard", the first run's name beside it
+  std::string note;                    // why it may differ from the recording; for people
 };
 
 // Runs the session's hand again under `chosen` for all settings that may change. Tells `at` the

@@ -54,6 +54,7 @@ RunWatch::RunWatch(const ArmDescription& arm, const RowLayout& layout, const Par
 void RunWatch::change(std::uint64_t row, const Parameters& p) { changes_.push_back({row, p}); }
 
 void RunWatch::hold(const Parameters& p) {
+  tick_ = p.tick;
   limits_ = motor_limits(arm_, p);
   promised_ = std::max(promised_, promised(p));
   at_fault_ = passivity(analyze(arm_, rest_pose(arm_), p, std::nullopt), p).passive == false;
@@ -75,6 +76,8 @@ void RunWatch::add(std::span<const double> row) {
     shares_.change(time);
     hold(changes_.front().parameters);
   }
+  const bool limited = any_at_limit(layout_, row, limits_);
+  at_limit_ += limited ? tick_ : 0;
   ++rows_;
   diverged_.add(row);
   if (diverged_.wild()) return;  // instability has its own warning
@@ -84,8 +87,7 @@ void RunWatch::add(std::span<const double> row) {
     begun_at_ = energy;
     shares_.begin(spring_energy(layout_, row));
   }
-  shares_.take(time, energy - *begun_at_, withheld_.add(layout_, row),
-               any_at_limit(layout_, row, limits_));
+  shares_.take(time, energy - *begun_at_, withheld_.add(layout_, row), limited);
   energy_.take(time, at_fault_ ? shares_.without_limits() : shares_.own(), promised_ + kGivenEnergy,
                settings_);
   if (tip_speed_bound(row) <= kFastestTip) return;
@@ -131,6 +133,17 @@ std::vector<std::string> RunWatch::cautions() const {
   return all;
 }
 
+std::string at_limit_text(std::span<const double> lanes) {
+  std::string text;
+  for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
+    if (!(lanes[lane] > 0)) continue;
+    text += fmt::format(
+        "motors at their limit    {:.3g} s{}; in this time device and proxy may drift apart\n",
+        lanes[lane], lanes.size() == 1 ? "" : fmt::format(" in the {} run", lane_ordinal(lane)));
+  }
+  return text;
+}
+
 void add_warnings(const std::vector<std::string>& of_lane, std::size_t lane,
                   std::vector<std::string>& into) {
   for (const std::string& warning : of_lane) {
@@ -169,6 +182,12 @@ void SessionWatch::take(LaneRows rows) {
 std::vector<std::string> SessionWatch::warnings() const {
   std::vector<std::string> all;
   for (std::size_t i = 0; i < lanes_.size(); ++i) add_warnings(lanes_[i].warnings(), i, all);
+  return all;
+}
+
+std::vector<double> SessionWatch::at_limit() const {
+  std::vector<double> all;
+  for (const RunWatch& lane : lanes_) all.push_back(lane.at_limit());
   return all;
 }
 

@@ -32,6 +32,8 @@ class RunWatch {
   void change(std::uint64_t row, const Parameters& p);
   void add(std::span<const double> row);
 
+  // Returns the time in which a motor was at its limit [s].
+  double at_limit() const { return at_limit_; }
   // Returns warnings, a sentence each; none of a run that is as it should be.
   std::vector<std::string> warnings() const;
   // Returns the warnings without instability, which RunEnd tells.
@@ -64,11 +66,15 @@ class RunWatch {
   std::deque<Change> changes_;
   std::uint64_t rows_ = 0;
   std::vector<MotorLimit> limits_;  // of the motors
+  double tick_ = 0, at_limit_ = 0;  // time with a motor at its limit [s]
   double promised_ = 0;             // largest E_c that the law allows [J]
   bool at_fault_ = false;           // the law is known not to be passive
   std::string settings_;            // in words
   Excess energy_, speed_;
 };
+
+// Returns a line for each lane whose motors were at their limit for so long [s].
+std::string at_limit_text(std::span<const double> lanes);
 
 // Appends a lane's warnings; a further lane's begin with "the second run: " or the like.
 void add_warnings(const std::vector<std::string>& of_lane, std::size_t lane,
@@ -83,6 +89,9 @@ class SessionWatch {
   // Takes whole rows of all lanes in turn.
   void take(LaneRows rows);
   std::vector<std::string> warnings() const;
+  // Returns the time in which a motor of each lane was at its limit [s]; empty if the arm cannot be
+  // read.
+  std::vector<double> at_limit() const;
 
  private:
   std::size_t stride_;

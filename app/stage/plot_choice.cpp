@@ -149,19 +149,25 @@ Band force_band(int channel) {
   return band;
 }
 
+// Returns the word of a run in bands; empty for a single run.
+std::string word_of(std::size_t run, const RunNames& names) {
+  if (!names.several()) return {};
+  if (!names.beside) return run == kMainLane ? "recorded" : "re-run";
+  if (names.names.size() == 2) return run == kMainLane ? "left" : "right";
+  return fmt::format("run {}", run + 1);
+}
+
 // Returns the band of a run's law; of several runs at once each has an edge of its own.
 Band law_band(std::size_t run, const TraceChannels& channels, const RunNames& names) {
   Band laws{
       .channel = law_channel(run, channels), .tint = 0.12f, .laws = true, .key = "coupling.kind"};
-  std::string whose;
   if (names.several()) {
     laws.lane = static_cast<int>(run);
     laws.key = (run == kMainLane ? "" : lane_mark(run)) + laws.key;
-    whose =
-        names.names.size() == 2 ? (run == 0 ? "left " : "right ") : fmt::format("run {} ", run + 1);
   }
+  const std::string word = word_of(run, names);
   for (std::uint8_t i = 0; i < kLaws; ++i) {
-    laws.names.push_back(whose + info(CouplingKind{i}).key);
+    laws.names.push_back((word.empty() ? "" : word + " ") + info(CouplingKind{i}).key);
   }
   return laws;
 }
@@ -169,12 +175,19 @@ Band law_band(std::size_t run, const TraceChannels& channels, const RunNames& na
 // Returns bands for the laws of runs, for motors at their limit, and for missing force.
 std::vector<Band> bands(const TraceChannels& channels, const RunNames& names) {
   std::vector<Band> bands;
-  const bool again = names.several() && !names.beside;  // a re-run lies over the first
-  for (std::size_t run = 0; run < std::max<std::size_t>(1, names.names.size()) && !again; ++run) {
+  const bool again = names.several() && !names.beside;
+  const std::size_t runs = std::max<std::size_t>(1, names.names.size());
+  for (std::size_t run = 0; run < runs && !again; ++run) {
     bands.push_back(law_band(run, channels, names));
   }
-  bands.push_back({static_cast<int>(Channel::limited), {"", "motor at its limit"}});
   bands.push_back(force_band(*channels.find("device/force_state")));
+  for (std::size_t run = 0; run < runs; ++run) {
+    const int channel =
+        static_cast<int>(Channel::limited) + static_cast<int>(run) * channels.count();
+    const std::string word = word_of(run, names);
+    bands.push_back(
+        {channel, {"", "motor at its limit" + (word.empty() ? "" : " (" + word + ")")}});
+  }
   return bands;
 }
 

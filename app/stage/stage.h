@@ -41,8 +41,10 @@ class Stage {
   const RowView& rows() const { return rows_; }
   const TraceChannels& channels() const { return channels_; }
 
-  // Sets the torque limits under these parameters, from the next row on.
-  void follow(const Parameters& p) { channels_.set_limits(motor_limits(arm_, p)); }
+  // Sets the torque limits of a lane under these parameters, from the next row on.
+  void follow(const Parameters& p, std::size_t lane = kMainLane) {
+    channels_.set_limits(motor_limits(arm_, p), lane);
+  }
 
   // Accounts for the energy of all runs in the samples up to `end`.
   void follow_energy(SampleIndex end);

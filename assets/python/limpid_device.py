@@ -10,6 +10,7 @@ while nobody is connected. Run as a program, it plays joints that springs hold:
     python3 limpid_device.py [NAME [JOINTS [VERSION]]]
 """
 
+import argparse
 import math
 import os
 import pathlib
@@ -60,7 +61,10 @@ class LimpidDevice:
         self._room = 6 if version == 1 else 8
         self._feature = (feature_1(name, lower, upper, effort, rate) if version == 1 else
                          feature_2(name, lower, upper, effort, rate, slides))
-        folder = pathlib.Path(os.environ["XDG_RUNTIME_DIR"], "limpid")
+        runtime = os.environ.get("XDG_RUNTIME_DIR")
+        if not runtime:
+            raise OSError("XDG_RUNTIME_DIR is not set; Limpid looks for devices in that folder")
+        folder = pathlib.Path(runtime, "limpid")
         folder.mkdir(mode=0o700, exist_ok=True)
         unready = folder / f"{name}.new"
         unready.unlink(missing_ok=True)
@@ -165,6 +169,27 @@ def play(name: str, joints: int, version: int = 1):
             x[i] = max(-end, min(end, x[i] + dt * v[i]))
 
 
+def main():
+    parser = argparse.ArgumentParser(
+        description="A simulated haptic device: joints that springs hold. Limpid finds it while it runs.")
+    parser.add_argument("name", nargs="?", default="springs", metavar="NAME")
+    parser.add_argument("joints", nargs="?", default=2, type=int, metavar="JOINTS",
+                        help="1 to 6, with version 2 to 8; default 2")
+    parser.add_argument("version", nargs="?", default=1, type=int, choices=(1, 2),
+                        metavar="VERSION", help="of the reports, 1 or 2; default 1")
+    given = parser.parse_args()
+    most = 6 if given.version == 1 else 8
+    if not 1 <= given.joints <= most:
+        parser.error(f"JOINTS: {given.joints} is not allowed; allowed: 1 to {most}")
+    if not given.name or "/" in given.name:
+        parser.error(f"NAME: '{given.name}' is not allowed; needed: letters that a file's name may have")
+    try:
+        play(given.name, given.joints, given.version)
+    except OSError as error:
+        sys.exit(f"limpid_device.py: {error}")
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
 if __name__ == "__main__":
-    words = sys.argv[1:]
-    play(words[0] if words else "springs", *map(int, words[1:] or [2]))
+    main()

@@ -69,11 +69,12 @@ std::string told(const BoundedWall& wall, PredictiveWallSetting setting, const L
     case WallBound::proxy:
       return "above this stiffness the hand would feel the proxy's inertia through k_vc";
     case WallBound::step:
-      return fmt::format(
-          "step: at this wall an encoder step of {:.2g} mm at the tip pushes with 0.25 N", q_t);
+      return fmt::format("at this wall an encoder step of {:.2g} mm at the tip pushes with 0.25 N",
+                         q_t);
     case WallBound::friction:
       return fmt::format(
-          "friction: {:.2g} N are just enough to hold the tip inside an encoder step of {:.2g} mm",
+          "{:.2g} N of friction are just enough to hold the tip inside an encoder step of {:.2g} "
+          "mm",
           setting.friction, q_t);
     case WallBound::cell:
       setting.friction = kUsualFriction;

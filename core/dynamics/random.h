@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <initializer_list>
 #include <random>
+#include <span>
 
 #include "core/math/elementary.h"
 #include "core/math/sizes.h"
@@ -23,9 +24,13 @@ class Random {
     return exponential(between(logarithm(low), logarithm(high)));
   }
   template <class T>
-  T one_of(std::initializer_list<T> values) {
+  T one_of(std::span<const T> values) {
     const double at = between(0, static_cast<double>(values.size()) - 1e-9);
-    return values.begin()[static_cast<std::size_t>(at)];
+    return values[static_cast<std::size_t>(at)];
+  }
+  template <class T>
+  T one_of(std::initializer_list<T> values) {
+    return one_of(std::span<const T>(values.begin(), values.size()));
   }
   Vec3 point(double size) {
     return {between(-size, size), between(-size, size), between(-size, size)};

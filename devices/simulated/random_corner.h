@@ -1,7 +1,7 @@
 // Random test cases: motors at their limit while the tip is between walls.
 #pragma once
 
-#include <initializer_list>
+#include <span>
 
 #include "core/tick/parameters.h"
 #include "devices/simulated/rig.h"
@@ -26,19 +26,24 @@ struct LimitedCorner {
 
 // Ranges that a corner is drawn from.
 struct CornerWidth {
-  std::initializer_list<int> dofs{3};
+  static constexpr int kDofs[]{3};
+  static constexpr double kFriction[]{0, 0.3, 0.5, 1}, kMasses[]{0, 0.02, 0.1};
+
+  std::span<const int> dofs = kDofs;
   int planes = 3;      // most of them
   double grip = 3000;  // stiffest grip [N/m]
-  std::initializer_list<double> friction{0, 0.3, 0.5, 1};
-  std::initializer_list<double> masses{0, 0.02, 0.1};  // of the hand [kg]
-  bool eta = false;                                    // draws eta, else 1
+  std::span<const double> friction = kFriction;
+  std::span<const double> masses = kMasses;  // of the hand [kg]
+  bool eta = false;                          // draws eta, else 1
 };
 // Wider ranges: other arms, more walls, more friction, other eta.
-inline constexpr CornerWidth kWideCorners{.dofs = {3, 7, 12},
+inline constexpr int kWideDofs[]{3, 7, 12};
+inline constexpr double kWideFriction[]{0, 0.3, 0.7, 1.5}, kWideMasses[]{0, 0.1, 0.5};
+inline constexpr CornerWidth kWideCorners{.dofs = kWideDofs,
                                           .planes = 6,
                                           .grip = 10'000,
-                                          .friction = {0, 0.3, 0.7, 1.5},
-                                          .masses = {0, 0.1, 0.5},
+                                          .friction = kWideFriction,
+                                          .masses = kWideMasses,
                                           .eta = true};
 
 // Draws a corner by `seed`. Arms of as many joints as `desktop` are `desktop`; others are random.

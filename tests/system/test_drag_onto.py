@@ -14,7 +14,7 @@ AIMS = [
     ("cradle", "ball 5", 0.02), ("cup", "cup", 0.05), ("dial", "dial", 0.04), ("dominoes", "domino 1", 0.04),
     ("drawer_door", "drawer", 0.05), ("gears", "wheel", 0.07), ("keys", "clicky", 0.02), ("leaf", "leaf", 0.09),
     ("marbles", "marble 3", 0.02), ("obstacles", "block", 0.06), ("pendulum", "pendulum", 0.07),
-    ("pucks", "500 g", 0.04), ("seesaw", "block", 0.03), ("spheres", "brass, 5000 N/m", 0.04),
+    ("pucks", "500 g", 0.04), ("seesaw", "block", 0.03), ("spheres", "brass", 0.04),
     ("stack", "block 5", 0.03), ("switch", "rocker", 0.03),
 ]  # fmt: skip
 ALLOWED_MISSES = len(AIMS) // 14

@@ -18,10 +18,10 @@ class Energy(WindowTest):
 
     def test_passivity_is_broken_by_a_button_and_repaired_by_it_or_by_undo(self) -> None:
         before = self.state()
-        for end in ("Repair", "undo", "C", "End it (C)"):
+        for end in ("Repair", "undo", "C", "Repair (C)"):
             with self.subTest(end):
                 self.click_on("coupling", "Break passivity")
-                self.wait("a banner", lambda s: any("End it (C)" in b["buttons"]
+                self.wait("a banner", lambda s: any("Repair (C)" in b["buttons"]
                                                     for b in s["banners"]))
                 broken = self.wait("a small eta", lambda s: s["eta"] < 0.6 and s["kind"] == 1)
                 self.hold()

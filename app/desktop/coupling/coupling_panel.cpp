@@ -598,7 +598,8 @@ void draw_apart(const CouplingReading& reading) {
            fmt::format("{:.2f} m{}", 1e3 * reading.error, reading.error_unit), {},
            "Coordination error |x_E|: joint angles of the device minus joint angles of the proxy. "
            "The first plot shows |x_E|.");
-  read_out("Contact force", fmt::format("{:.2f} N", reading.contact), {},
+  read_out("Contact force",
+           fmt::format("{:.2f} N{}", reading.contact, reading.carries ? " + magnet" : ""), {},
            "Force of the scene on the proxy. The hand feels less force while a motor is at its "
            "limit, while the force is off, or while the law reduces the torque. The force of an "
            "object on the magnet is not counted here, but is counted in f2 of the plots.");

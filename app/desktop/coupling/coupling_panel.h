@@ -28,9 +28,10 @@ struct CouplingReading {
   double turned_less;  // ticks in which mechanisms turned as far as they may
   double error = 0;    // |x_E| in its unit
   std::string error_unit = "rad";
-  double gap = 0;      // of the tips of device and proxy [m]
-  double contact = 0;  // how hard the scene pushes on the proxy [N]
-  std::string warm{};  // which motor its warmth holds back, in words; empty: none
+  double gap = 0;        // of the tips of device and proxy [m]
+  double contact = 0;    // how hard the scene pushes on the proxy [N]
+  bool carries = false;  // an object is on the magnet
+  std::string warm{};    // which motor its warmth holds back, in words; empty: none
 };
 
 // Situation of the coupling. `analysis` is of these parameters; `real`: a device is in the arm's

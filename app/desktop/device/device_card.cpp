@@ -185,7 +185,9 @@ void draw_force(const LiveStage& live, const Parameters& p, StepState state) {
 
 DeviceSituation situation_of(DeviceController& devices, const LiveLoop& loop) {
   const FoundDevice* found = devices.hub().present();
-  const bool in_place = loop.device_in_place();
+  // A device that was pulled out keeps its place, and a look may miss one that answers.
+  const bool there = loop.snapshot().connected || found != nullptr;
+  const bool in_place = loop.device_in_place() && there;
   return {.present = found != nullptr && found->missing.empty(),
           .asks_for_arm = devices.hub().may_say_arm() && devices.hub().asks_for_arm(),
           .checking = devices.check() != nullptr,
@@ -204,9 +206,10 @@ DeviceSteps steps_of(const DeviceSituation& of) {
   DeviceSteps steps;
   const bool at_axes = of.checking || of.awaits_check;
   const bool opens = of.present && !of.problem;
-  steps.found = of.in_place || at_axes || opens ? done : of.problem ? failed : now;
+  const bool there = of.in_place || at_axes;
+  steps.found = there || opens ? done : of.problem ? failed : now;
   if (steps.found != done) return steps;
-  steps.arm = of.asks_for_arm ? now : of.in_place ? done : later;
+  steps.arm = of.asks_for_arm ? now : there ? done : later;
   if (at_axes) steps.axes = of.check_failed && !of.checking ? failed : now;
   if (!of.in_place) return steps;
   steps.axes = done;

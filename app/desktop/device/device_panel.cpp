@@ -73,6 +73,13 @@ void choices(DeviceController& devices, const PadChoice& pads) {
   if (!known)
     choice(devices, "the last device", devices.hub().in_use(),
            "The last device is not plugged in.");
+  if (known && devices.hub().found().empty()) {
+    ImGui::TextWrapped("No haptic device is plugged in.");
+    tooltip(
+        "A device stands here as soon as Limpid finds it. `limpid doctor` says what is missing for "
+        "a device. The manual (menu Help) lists the devices that Limpid supports, and a "
+        "simulated device to try.");
+  }
 }
 
 // Draws which part of the device's own forces the motors compensate.
@@ -150,13 +157,13 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
   ImGui::SameLine(8.5f * ImGui::GetFontSize());
   changed = ImGui::Checkbox("invert", &axis.inverted) || changed;
   tooltip("Reverses the sign of the axis and of its torque.");
-  ImGui::SameLine();
+  flow("reverse force");
   changed = ImGui::Checkbox("reverse force", &axis.reversed) || changed;
   tooltip(
       "Reverses a motor that pushes in the wrong direction. The check of the axes finds such a "
       "motor by itself. After a change here the axes are checked again, because with the wrong "
       "sign the loop is unstable.");
-  ImGui::SameLine();
+  flow("zero here");
   if (ImGui::SmallButton("zero here")) {
     axis.zero += angle / axis.factor();
     changed = true;

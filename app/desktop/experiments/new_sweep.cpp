@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char* kTitle = "New sweep";
 constexpr std::uint64_t kMostRuns = 20'000;  // for more there is the command line
 constexpr std::size_t kMostRecordings = 6;
-constexpr float kLabels = 7, kControls = 24;  // widths of the columns [em]
+constexpr float kLabels = 7, kControls = 30;  // widths of the columns [em]
 
 // Returns all that an axis can be about, in the order of the panels.
 std::vector<const FieldInfo*> axis_fields() {
@@ -100,6 +100,21 @@ std::string wrong_with(const SweepDraft& draft) {
     return fmt::format("{}, {}", axis_field(each.key)->caption, here.substr(kAxis.size()));
   }
   return wrong;
+}
+
+// Names the law of all runs, and says if it does not use a varied eta; empty if the law is varied
+// itself.
+std::string law_text(const SweepDraft& draft) {
+  const auto varies = [&](std::string_view key) {
+    return std::ranges::find(draft.axes, key, &DraftAxis::key) != draft.axes.end();
+  };
+  if (varies("coupling.kind")) return {};
+  const LawInfo& law = info(draft.parameters.kind);
+  std::string text = fmt::format("Law: {}.", law.label);
+  if (varies("coupling.eta") && !law.takes_eta) {
+    text += " It does not use \xCE\xB7. All values of \xCE\xB7 give the same result.";
+  }
+  return text;
 }
 
 }  // namespace
@@ -333,6 +348,7 @@ void NewSweepDialog::draw_end(const SweepBasis& basis, SweepController& controll
   ImGui::Spacing();
   ImGui::TextWrapped("%s",
                      fmt::format("{} runs, kept in {}", points(), sweeps_dir().string()).c_str());
+  if (const std::string law = law_text(wanted); !law.empty()) ImGui::TextWrapped("%s", law.c_str());
   if (!wrong.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
     ImGui::TextWrapped("%s", wrong.c_str());

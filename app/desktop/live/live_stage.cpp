@@ -139,7 +139,7 @@ std::string LiveStage::why_lanes_are_fixed() const {
 void LiveStage::update(std::span<const Parameters> lanes) {
   std::ranges::copy(lanes, controls().lanes.begin());
   session_.run_lanes(lanes.size());
-  stage_->follow(lanes[kMainLane]);
+  for (std::size_t lane = 0; lane < lanes.size(); ++lane) stage_->follow(lanes[lane], lane);
   tell(session_.turn([this](LaneRows rows, std::uint64_t tick) {
     stage_->append(rows);
     grip_.take(rows[kMainLane]);
@@ -159,7 +159,7 @@ void LiveStage::mark(const std::string& label, const std::string& key) {
 LiveStage::Moment LiveStage::now() const {
   Moment at{.time = stage_->history.end_time()};
   if (!loop().recording()) return at;
-  at.row = loop().recorder()->newest();
+  at.row = loop().recorded_row(session_.tick());
   at.recording = loop().recorder();
   return at;
 }

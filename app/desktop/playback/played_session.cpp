@@ -21,13 +21,25 @@ namespace fs = std::filesystem;
 
 constexpr double kOfStory = 12;  // time that the plots of a story show: about a step [s]
 
-// Returns the history of the whole recording, and of runs beside it. It marks a story's
-// steps, or else every change of a setting.
+// Returns the settings of a recorded lane.
+std::vector<SettingsFrom> settings_of(const Session& lane, const std::string& where) {
+  std::vector<SettingsFrom> all{{0, session_parameters(lane, where)}};
+  for (const SettingChange& change : lane.changes) {
+    all.push_back({change.row, all.back().parameters});
+    apply_change(all.back().parameters, change);
+  }
+  return all;
+}
+
+// Returns the history of the whole recording, and of runs beside it with these settings. It marks a
+// story's steps, or else every change of a setting.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
-                   LaneRows beside, const std::vector<StoryStep>& steps) {
+                   LaneRows beside, std::span<const std::vector<SettingsFrom>> settings,
+                   const std::vector<StoryStep>& steps) {
   TraceChannels channels(arm, session.layout, session.info.bodies);
   Parameters p = session_parameters(session, where);
   channels.set_limits(motor_limits(arm, p));
+  std::vector<std::size_t> next(settings.size(), 0);
   const double length = static_cast<double>(session.size()) * session.info.tick;
   History history({.channels = channels.count() * (1 + static_cast<int>(beside.size())),
                    .seconds = length + 1,
@@ -42,6 +54,11 @@ History history_of(const Session& session, const std::string& where, const ArmDe
       const ParameterInfo* info = find_parameter(change->key());
       if (info == nullptr || !steps.empty()) continue;
       history.mark(static_cast<double>(k) * session.info.tick, mark_text(*info, p), info->key);
+    }
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      for (; next[i] < settings[i].size() && settings[i][next[i]].row <= k; ++next[i]) {
+        channels.set_limits(motor_limits(arm, settings[i][next[i]].parameters), i + 1);
+      }
     }
     for (const StoryStep& step : steps) {
       const double at = std::round(step.begins / session.info.tick);
@@ -64,8 +81,12 @@ LoadedSession load_session(const fs::path& file) {
   RunPlan world = replay(*session, file.string(), {});
   const auto lanes = session->lane_rows();
   std::vector<StoryStep> steps = told_in(*session, file).steps;
+  std::vector<std::vector<SettingsFrom>> beside;
+  for (std::size_t i = 1; i < session->lanes(); ++i) {
+    beside.push_back(settings_of(session->lane(i), file.string()));
+  }
   History history =
-      history_of(*session, file.string(), world.arm, LaneRows(lanes).subspan(1), steps);
+      history_of(*session, file.string(), world.arm, LaneRows(lanes).subspan(1), beside, steps);
   return {.file = file,
           .session = std::move(session),
           .arm = std::move(world.arm),
@@ -113,7 +134,8 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
                                   [&](double part) { progress.part = part; });
   const std::span<const double> rows(again.rows);
   const LaneRows beside = again.rows.empty() ? LaneRows() : LaneRows(&rows, 1);
-  History history = history_of(session, where, again.arm, beside, {});
+  History history =
+      history_of(session, where, again.arm, beside, std::span(&again.settings, 1), {});
   return {std::move(again), std::move(history), changed_settings(session, where, chosen)};
 }
 

@@ -235,6 +235,15 @@ void Document::redo() {
   if (may_go_to(history_.next_redo(), "Nothing to redo.")) go_to(history_.redo(known_));
 }
 
+void Document::give_up(const SceneEditor::Version& before) {
+  note_changes();
+  editor_.restore(before);
+  const bool forgot = history_.forget_since(
+      [&](const EditState& state) { return state.scene.world == before.world; },
+      [&](const EditState& state) { return state.lanes == known_.lanes; });
+  forgot ? void(known_ = present()) : note_changes();
+}
+
 std::string Document::toml() const { return text_of(editor_.document(), arm_, file_); }
 
 fs::path Document::own_file() const {

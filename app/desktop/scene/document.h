@@ -48,6 +48,18 @@ class UndoHistory {
   // Returns the state to go back or forward to, if there is one.
   std::optional<State> undo(const State& now) { return go(undo_, redo_, now); }
   std::optional<State> redo(const State& now) { return go(redo_, undo_, now); }
+  // Forgets all steps since the last state that `is_before`, which was gone back to. Returns false
+  // if there is none, or if a step since then did more than `is_part` says.
+  template <class IsBefore, class IsPart>
+  bool forget_since(IsBefore is_before, IsPart is_part) {
+    for (auto state = undo_.rbegin(); state != undo_.rend() && is_part(*state); ++state) {
+      if (!is_before(*state)) continue;
+      undo_.erase(std::prev(state.base()), undo_.end());
+      open_.clear();
+      return true;
+    }
+    return false;
+  }
   const State* next_undo() const { return undo_.empty() ? nullptr : &undo_.back(); }
   const State* next_redo() const { return redo_.empty() ? nullptr : &redo_.back(); }
 
@@ -119,6 +131,8 @@ class Document {
 
   void undo();  // if passivity is broken, ends that instead
   void redo();
+  // Takes the scene back to before the change under way, which leaves no step.
+  void give_up(const SceneEditor::Version& before);
   // Notes changes by panels, keys and mouse for undo; to be called once a frame.
   void note_changes();
   void hold(bool mouse_held) { history_.hold(mouse_held); }

@@ -52,7 +52,7 @@ bool TransformTool::untype() {
 void TransformTool::give_up(Document& document) {
   wanted_.reset();
   if (!std::exchange(transform_, std::nullopt)) return;
-  if (document.editor().version().world != before_.world) document.editor().restore(before_);
+  if (document.editor().version().world != before_.world) document.give_up(before_);
 }
 
 bool TransformTool::draw(Document& document, std::span<const Pose> bodies, const Camera& camera,

@@ -125,8 +125,9 @@ std::optional<Banner> live_force(const LiveStage& live) {
   const bool recording = live.loop().recording();
   Banner banner = force_banner(recording ? "Recording without force" : "Force is off", why,
                                recording || now.arming == Arming::tripped);
+  if (live.loop().device_in_place() && !now.connected) return banner;
   banner.text += " Key F switches the force on.";
-  banner.buttons = {{"Arm (F)", "device.force"}};
+  banner.buttons = {{"Force on (F)", "device.force"}};
   return banner;
 }
 
@@ -141,7 +142,7 @@ Banner break_banner(bool force, bool hand) {
                               "their earlier values again.",
                               now),
           .bad = true,
-          .buttons = {{"End it (C)", "coupling.end_break"}}};
+          .buttons = {{"Repair (C)", "coupling.end_break"}}};
 }
 
 Banner chatter_banner(const ChatterWatch& chatter) {

@@ -121,7 +121,7 @@ class Desktop {
   Tuning tuning;
   ChatterWatch chatter{settings, live, document};
   PlotLayout plots;
-  Exporter exporter{live, dialog, notices};
+  Exporter exporter{live, dialog};
   Marking marking{settings, live, playback, dialog, notices};
   TransformTool transform;
   Pads pads;

@@ -8,8 +8,8 @@
 #include <array>
 #include <chrono>
 #include <ctime>
+#include <deque>
 #include <memory>
-#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -385,7 +385,9 @@ void draw_messages(bool& open, const Notices& notices) {
   ImGui::BeginChild("all", {0, -ImGui::GetFrameHeightWithSpacing()});
   if (notices.past().empty()) ImGui::TextDisabled("no messages since the start");
   std::string all;
-  for (const Notice& notice : notices.past() | std::views::reverse) {
+  const std::deque<Notice>& past = notices.past();
+  for (auto it = past.rbegin(); it != past.rend(); ++it) {
+    const Notice& notice = *it;
     const std::time_t at = std::chrono::system_clock::to_time_t(notice.said);
     const std::string line = fmt::format("{:%H:%M:%S}  {}", fmt::localtime(at), notice.text);
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(notice.bad ? current_palette().broken

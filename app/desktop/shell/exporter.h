@@ -13,8 +13,7 @@ namespace limpid {
 
 class Exporter {
  public:
-  Exporter(LiveStage& live, OpenDialog& dialog, Notices& notices)
-      : live_(live), dialog_(dialog), notices_(notices) {}
+  Exporter(LiveStage& live, OpenDialog& dialog) : live_(live), dialog_(dialog) {}
 
   // Opens the dialog, with this plot offered first.
   void begin(std::size_t plot) {
@@ -37,7 +36,6 @@ class Exporter {
  private:
   LiveStage& live_;
   OpenDialog& dialog_;
-  Notices& notices_;
   std::size_t plot_ = 0;
   std::filesystem::path written_;
   double until_ = 0;  // ImGui's time [s]

@@ -262,13 +262,13 @@ void Frame::draw_coupling(ScreenRect rect) {
                           layout.bodies() > 0 ? at(Column::objects_stood_still) : 0,
                           layout.bodies() > 0 ? at(Column::objects_turned_less) : 0};
   for (int j = 0; j < layout.dof(); ++j) {
-    if (channels.limited(row, j)) reading.limited.push_back(j);
+    if (channels.limited(row, j, lane)) reading.limited.push_back(j);
   }
   PlayedSession* const played = desktop_.playback.shown();
   const Parameters& settings = played != nullptr ? played->settings() : desktop_.tuning.edited();
   reading.warm = warm_text(shown.arm(), settings, layout, row);
   std::vector<double> values(static_cast<std::size_t>(channels.count()));
-  channels.values(row, values);
+  channels.values(row, values, lane);
   const auto value = [&](const char* key) {
     const auto channel = channels.find(key);
     return channel ? values[static_cast<std::size_t>(*channel)] : 0;
@@ -277,6 +277,7 @@ void Frame::draw_coupling(ScreenRect rect) {
   reading.error_unit = channels.infos()[static_cast<std::size_t>(Channel::error)].unit;
   reading.gap = value("coordination/gap");
   reading.contact = value("contact/total_force_norm");
+  reading.carries = layout.has(Column::magnet) && at(Column::magnet) > 0;
   const CouplingSituation now{.analysis = desktop_.tuning.analysis(),
                               .arm = shown.arm(),
                               .real = desktop_.live.loop().device_in_place(),

@@ -153,6 +153,7 @@ Sections::Sections(Desktop& desktop) : desktop_(desktop) {
 void Sections::draw(const Act& act) {
   // A device that is in use comes first: nothing of it is below the fold.
   const bool device = with_device(desktop_);
+  if (std::exchange(device_first_, device) != device && device) ImGui::SetScrollY(0);
   for (const bool first : {true, false}) {
     for (const auto& [kind, draw_it] : drawn_) {
       if ((device && kind->make == device_section) != first) continue;

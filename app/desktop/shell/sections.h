@@ -28,6 +28,7 @@ class Sections {
 
  private:
   Desktop& desktop_;
+  bool device_first_ = false;
   std::vector<std::pair<const SectionKind*, DrawSection>> drawn_;
 };
 

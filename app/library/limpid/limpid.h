@@ -100,10 +100,12 @@ struct LoopOptions {
   // setting_list() has all of them. The law is "proposed", the paper's, unless coupling.kind says
   // another; "predictive" renders stiffer walls, and stays passive with a low eta. Gains that no
   // setting names are fitted to the arm. Of a device say the step of its encoders,
-  // device.encoder_step, and its delay in ticks, model.delay. hand.* and plant.* are the simulated
-  // hand's and arm's; a DeviceLoop refuses them. In settings, whose units have rad, 1 rad of a
-  // slide is 0.1 m: coupling.k_vc = 1 N m/rad is 100 N/m, device.damping = 1 N m s/rad is 100 N
-  // s/m, a torque of 1 N m is 10 N, and device.encoder_step = 1e-4 rad is 1e-5 m.
+  // device.encoder_step, and its delay in ticks, model.delay. hand.*, plant.*,
+  // device.substeps, device.gravity and device.springs belong to the simulated hand and arm, and
+  // device.delay and device.friction to simulated motors: a DeviceLoop refuses them here, and takes
+  // no notice of them in `config`. In settings, whose units have
+  // rad, 1 rad of a slide is 0.1 m: coupling.k_vc = 1 N m/rad is 100 N/m, device.damping = 1 N m
+  // s/rad is 100 N s/m, a torque of 1 N m is 10 N, and device.encoder_step = 1e-4 rad is 1e-5 m.
   std::vector<std::string> settings;
   // Time from a tick to the next, 1e-5 to 0.1 s, with real motors at most 0.004 s: what your loop
   // keeps. Faster loops render stiffer walls. Most of what Limpid promises was tried at 0.001.

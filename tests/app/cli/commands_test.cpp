@@ -4,6 +4,8 @@
 #include <numbers>
 #include <regex>
 
+#include "app/story/run_story.h"
+#include "devices/files/session/session.h"
 #include "tests/app/cli/said.h"
 
 namespace limpid {
@@ -83,6 +85,25 @@ TEST_F(Commands, RunOfATwinHasTwoRunsOfTwoLaws) {
       ContainsRegex("proposed 1.*proposed 0.7"));
   EXPECT_THAT(refused({"run", "--twin", "loop.tick=0.0005", "--duration", "0.02"}),
               HasSubstr("all runs must have the same tick"));
+}
+
+TEST_F(Commands, RunAndInfoSayForHowLongMotorsWereAtTheirLimit) {
+  const std::vector<std::string> weak{
+      "run", "--duration", "0.8", "--coupling", "standard", "--set", "device.torque_limit=0.002"};
+  std::vector<std::string> recorded = weak, as_json = weak;
+  recorded.insert(recorded.end(), {"--record", "weak.h5"});
+  as_json.emplace_back("--json");
+  const std::string text = done(recorded);
+  const double time = behind(text, "motors at their limit");
+  EXPECT_GT(time, 0.01);
+  EXPECT_NEAR(parsed(as_json)["runs"][0]["at_limit_s"].get<double>(), time, 6e-4);
+  EXPECT_NEAR(behind(done({"info", "weak.h5"}), "motors at their limit"), time, 6e-4);
+  EXPECT_NEAR(parsed({"info", "weak.h5", "--json"})["runs"][0]["at_limit_s"].get<double>(), time,
+              6e-4);
+  std::vector<std::string> usual(weak.begin(), weak.end() - 2);
+  EXPECT_THAT(done(usual), Not(HasSubstr("motors at their limit")));
+  usual.insert(usual.end(), {"--twin", "device.torque_limit=0.002"});
+  EXPECT_THAT(done(usual), ContainsRegex("motors at their limit +[0-9.]+ s in the second run;"));
 }
 
 TEST_F(Commands, RunKeepsFilesThatAreThereUnlessForced) {
@@ -248,6 +269,23 @@ TEST_F(Commands, InfoTellsOfChangesAndMarks) {
   for (const json& change : told["changes"]) {
     EXPECT_THAT(text, HasSubstr(change["setting"].get<std::string>()));
   }
+}
+
+TEST_F(Commands, InfoSaysHowManyTicksCameLate) {
+  done({"run", "--duration", "0.05", "--record", "a.h5"});
+  EXPECT_THAT(done({"info", "a.h5"}), Not(HasSubstr("late ticks")));
+  Session session = read_session("a.h5");
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  for (const auto& [k, late] : {std::pair(3, 0.002), {7, 0.0142}, {9, 0.0009}}) {
+    const auto row = std::span(session.rows).subspan(static_cast<std::size_t>(k) * stride, stride);
+    session.layout.in(row, Column::wake_latency)[0] = late;
+  }
+  write_session(session, {}, "b.h5", false);
+  EXPECT_THAT(done({"info", "b.h5"}),
+              HasSubstr("late ticks               2 of 50, at most 14.2 ms late\n"));
+  const json told = parsed({"info", "b.h5", "--json"});
+  EXPECT_EQ(told["late_ticks"], 2);
+  EXPECT_EQ(told["largest_lateness_s"], 0.0142);
 }
 
 TEST_F(Commands, InfoWritesATableBesideWhereItIsFrom) {

@@ -131,11 +131,11 @@ TEST_P(Promises, AreKeptAndShownInAFigure) {
 
 // `robust` takes too long here; the system tests run all of them.
 INSTANTIATE_TEST_SUITE_P(Of, Promises,
-                         testing::Values("coordination", "inertia", "passivity", "spectrum",
-                                         "saturation", "observer", "transparency", "eta_min",
-                                         "lightness", "approaches", "switching", "friction",
-                                         "delay", "walls", "mass", "click", "drop", "stack", "link",
-                                         "zwidth"),
+                         testing::Values("bodies", "coordination", "inertia", "passivity",
+                                         "spectrum", "saturation", "observer", "transparency",
+                                         "eta_min", "lightness", "approaches", "switching",
+                                         "friction", "delay", "walls", "mass", "click", "drop",
+                                         "stack", "link", "zwidth"),
                          [](const auto& one) { return std::string(one.param); });
 
 // Recordings below a folder, and when each was written.

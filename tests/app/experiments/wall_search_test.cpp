@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "app/experiments/tap_bench.h"
+#include "app/run/analysis.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
@@ -74,6 +75,30 @@ TEST_F(Walls, ThatAreSoftFeelSoft) {
   const Touch touch = bench.touch(lab_.run({bench.trial()}).front());
   EXPECT_NEAR(touch.felt, 1, 0.01);
   EXPECT_LT(touch.chatter, 1e-3);
+}
+
+// Fitted gains meet condition (3) through the link, b_d >= 2 b_vc + k_vc (T + t_l), and leave less
+// of b_d than two digits of them round off.
+TEST(TapBench, TapsThroughALinkWithGainsAsStiffAsConditionThreeAllows) {
+  const ExperimentArm built_in = built_in_arm();
+  const double b_d = 0.012;
+  for (const int link : {1, 5, 20, 100}) {
+    const TapSetting papers{.kind = CouplingKind::standard, .link = link};
+    const Parameters plain = TapBench(built_in, papers, 600, 300, 1).parameters();
+    EXPECT_EQ(plain.link_delay, link);
+    EXPECT_EQ(plain.k_vc, Parameters{}.k_vc);
+    EXPECT_FALSE(condition3(built_in.description, plain).holds) << link;
+    TapSetting fits = papers;
+    fits.fits_link = true;
+    const Parameters fit = TapBench(built_in, fits, 600, 300, 1).parameters();
+    EXPECT_EQ(fit.link_delay, link);
+    EXPECT_EQ(fit.kind, CouplingKind::standard);
+    const Condition3 condition = condition3(built_in.description, fit);
+    EXPECT_TRUE(condition.holds) << link;
+    EXPECT_LT(condition.device_margin, 0.1 * b_d) << link;
+    EXPECT_NEAR(condition.device_margin, b_d - 2 * fit.b_vc - fit.k_vc * 0.001 * (1 + link), 1e-12)
+        << link;
+  }
 }
 
 TEST(TapBench, FindsATrialThatDivergedToBeAsBadAsCanBe) {

@@ -123,6 +123,28 @@ TEST(DeviceLoop, RefusesSettingsOfTheSimulatedHandAndArm) {
   EXPECT_THROW(loop.set("plant.cogging=0.01"), LoopError);
 }
 
+TEST(DeviceLoop, RefusesSettingsThatItsDeviceDoesNotTake) {
+  const auto refused = [](Motors motors, const std::string& setting) {
+    LoopOptions options = slide();
+    options.motors = motors;
+    DeviceLoop loop(options, std::array{0.0});
+    options.settings.push_back(setting);
+    const std::string making = refusal([&] { DeviceLoop(options, std::array{0.0}); });
+    EXPECT_EQ(making, refusal([&] { loop.set(setting); }));
+    return making;
+  };
+  for (const Motors motors : {Motors::real, Motors::simulated}) {
+    for (const char* const setting :
+         {"device.substeps=3", "device.gravity=true", "device.springs=true"}) {
+      EXPECT_THAT(refused(motors, setting), HasSubstr("belongs to the simulated arm")) << setting;
+    }
+  }
+  EXPECT_THAT(refused(Motors::real, "device.delay=2"), HasSubstr("model.delay tells the law"));
+  EXPECT_THAT(refused(Motors::real, "device.friction=0.01"), HasSubstr("stands in the arm's file"));
+  EXPECT_EQ(refused(Motors::simulated, "device.delay=2"), "nothing");
+  EXPECT_EQ(refused(Motors::simulated, "device.friction=0.01"), "nothing");
+}
+
 TEST(Loops, SayWhatIsNotAllowed) {
   const auto making = [](auto change) {
     LoopOptions options = slide();

@@ -142,6 +142,37 @@ TEST_F(APlot, WritesTheValuesOfTheMomentThatIsPointedAt) {
   });
 }
 
+// Whatever the value, its digits stand inside the plot.
+TEST_F(APlot, WritesValuesAtTheEndsThatFitIntoTheMargin) {
+  PlotSpec spec = energy();
+  spec.end_labels = true;
+  const float scale = current_scale();
+  for (const Limits& limits : {Limits{0, 0.6}, Limits{-0.05, 0.05}, Limits{-2e-4, 1e-4},
+                               Limits{-3000, 200}, Limits{-6, 0}}) {
+    for (const bool log : {false, true}) {
+      for (const double value : {1.9e-4, 3.04e-5, 0.0213, 0.0673, 12.345, 123.4, 2999.0, 0.0}) {
+        for (const double sign : {1.0, -1.0}) {
+          History history({.channels = 1});
+          history.append(0, std::array{log ? value : sign * value});
+          frame([&] {
+            const ScreenRect area{{60, 0}, {200, 400}};
+            const ScreenRect outer{{0, 0}, {200 + 6 * scale + end_label_width(), 420}};
+            ImDrawList& list = *ImGui::GetForegroundDrawList();
+            const PlotFrame in{list, current_palette(),   1,        outer,
+                               area, {1.0 / 140, 0, 140}, {{0, 1}}, {limits, log}};
+            const int before = list.VtxBuffer.Size;
+            draw_end_labels(in, spec, history, 0);
+            ASSERT_GT(list.VtxBuffer.Size, before);
+            for (int i = before; i < list.VtxBuffer.Size; ++i) {
+              EXPECT_LE(list.VtxBuffer[i].pos.x, outer.max.x) << sign * value << " " << log;
+            }
+          });
+        }
+      }
+    }
+  }
+}
+
 // The curve has a sign for each distance along it, complete while it scrolls.
 TEST_F(APlot, PutsSignsOnTheCurveOfASecondRun) {
   frame([&] {

@@ -98,6 +98,35 @@ TEST(TraceChannels, SayWhichMotorGivesAllItCan) {
   EXPECT_FALSE(channels.limited(row, 1));
 }
 
+// Lanes have limits of their own, or else those of the first.
+TEST(TraceChannels, SayInWhichLaneAMotorGivesAllItCan) {
+  const ArmDescription arm = test::omni();
+  TraceChannels channels{RowLayout(3)};
+  const RowLayout& layout = channels.layout();
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  layout.in(std::span(row), Column::commanded_torque)[1] = -0.5;
+  layout.in(std::span(row), Column::motor_torque)[1] = -0.2;
+  std::vector<double> values(static_cast<std::size_t>(channels.count()));
+  const auto limited = [&](std::size_t lane) {
+    channels.values(row, values, lane);
+    return values[static_cast<std::size_t>(Channel::limited)] > 0;
+  };
+  Parameters p;
+  p.torque_limit = 0.2;
+  channels.set_limits(motor_limits(arm, p));
+  for (std::size_t lane = 0; lane < kMostLanes; ++lane) EXPECT_TRUE(limited(lane));
+  p.torque_limit = 0.4;
+  channels.set_limits(motor_limits(arm, p), kTwinLane);
+  EXPECT_TRUE(limited(kMainLane));
+  EXPECT_FALSE(limited(kTwinLane));
+  History history({.channels = 2 * channels.count(), .seconds = 1, .tick = 0.001});
+  const std::vector<std::span<const double>> both{row, row};
+  channels.append(history, both);
+  const int limit = static_cast<int>(Channel::limited);
+  EXPECT_EQ(history.value(limit, 0), 1);
+  EXPECT_EQ(history.value(channels.count() + limit, 0), 0);
+}
+
 // Every column of a recording is a channel, with its value and its unit.
 TEST_P(TraceChannelsOfJoints, AreAllThatARecordingHolds) {
   const RowLayout layout(GetParam());

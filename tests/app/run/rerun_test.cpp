@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/app/run/recorded.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/test_session.h"
@@ -49,6 +52,27 @@ TEST_F(ARerun, HasTheRowsOfTheRecordingUntilSomethingIsChanged) {
   EXPECT_EQ(other.recorded, std::string("recorded: ") + name(before_.kind));
   const std::atomic<bool> stopped = true;
   EXPECT_TRUE(run_once_more(session_, "a.h5", chosen, stopped, at).rows.empty());
+}
+
+// A motor is at its limit whenever it gives all of its torque.
+TEST_F(ARerun, SaysForHowLongMotorsAreAtTheirLimit) {
+  const std::atomic<bool> stop = false;
+  Parameters chosen = before_;
+  set_parameter(chosen, "coupling.kind", std::string("standard"));
+  chosen.torque_limit = 0.03;
+  const RerunRows weak = run_once_more(session_, "a.h5", chosen, stop, [](double) {});
+  ASSERT_EQ(weak.settings.size(), 1u);
+  EXPECT_EQ(weak.settings[0].parameters, chosen);
+  std::size_t limited = 0;
+  const auto stride = static_cast<std::size_t>(session_.layout.stride());
+  for (std::size_t at = 0; at < weak.rows.size(); at += stride) {
+    const std::span<const double> row = std::span(weak.rows).subspan(at, stride);
+    const auto torque = session_.layout.in(row, Column::motor_torque);
+    limited += std::ranges::any_of(torque, [](double t) { return std::abs(t) >= 0.03; }) ? 1 : 0;
+  }
+  EXPECT_GT(limited, 0u);
+  EXPECT_NEAR(weak.at_limit, 1e-3 * static_cast<double>(limited), 1e-9);
+  EXPECT_EQ(run_once_more(session_, "a.h5", before_, stop, [](double) {}).at_limit, 0);
 }
 
 }  // namespace

@@ -79,13 +79,13 @@ TEST(TipLimits, OfThePredictiveLawCountStepsAndFriction) {
     EXPECT_NEAR(wall.stiffness / stiffness, 1, 0.1) << wall.bound;
     EXPECT_TRUE(wall.bound.starts_with(bound)) << wall.bound;
   };
-  expect(named("touch.urdf", 4.19e-4, kFromArm), 0.25 / 9.2e-5, "step: ");
+  expect(named("touch.urdf", 4.19e-4, kFromArm), 0.25 / 9.2e-5, "at this wall an encoder step");
   expect(named("touch.urdf", 4.19e-4, 0), 0.036 * std::pow(5e-3 / 0.6 / 9.2e-5, 2),
          "the tip can swing inside an encoder step");
-  expect(named("touch.urdf", 4.19e-4, 0.02), 2 * (0.02 / 0.191) / 9.2e-5, "friction: 0.1 N");
+  expect(named("touch.urdf", 4.19e-4, 0.02), 2 * (0.02 / 0.191) / 9.2e-5, "0.1 N of friction");
   expect(named("omni.urdf", 4.19e-4, kFromArm), 0.036 / 5 * std::pow(5e-3 / 0.6 / 9.2e-5, 2),
          "the tip can swing inside an encoder step");
-  expect(named("falcon.urdf", 3.84e-4, kFromArm), 6500, "step: ");
+  expect(named("falcon.urdf", 3.84e-4, kFromArm), 6500, "at this wall an encoder step");
   for (const char* file : {"omega.urdf", "inverse3.urdf"}) {
     expect(named(file, 1e-4, kFromArm), 10000,
            "the stiffest wall that was tested with encoder steps");

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/run/tip_limits.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
@@ -74,6 +77,34 @@ TEST(WallTap, AsksNoMoreOfTheMotorsThanTheyBearTwice) {
   // Motors half as strong bear half of the force.
   p.torque_limit = 0.05;
   EXPECT_NEAR(bearable_press(arm, place, p, 100), borne / 2, 1e-12);
+}
+
+// The motor that has the most to do bears just twice the press. A motor that bears nothing allows
+// for none, unless its joint is taken off the arm.
+TEST(WallTap, AsksEachMotorThatIsThereForHalfOfWhatItBearsAtMost) {
+  ArmDescription arm = test::random_arm(4, 3);
+  const auto place = [&] { return tap_place(arm, Eigen::VectorXd::Constant(arm.dof(), 0.3), {}); };
+  arm.joints.back().effort = 0;
+  EXPECT_EQ(bearable_press(arm, place(), {}, 100), 0);
+  arm.joints.pop_back();
+  arm.links.pop_back();
+  arm.frames.pop_back();
+  const TapPlace of_three = place();
+  const double press = bearable_press(arm, of_three, {}, 100);
+  EXPECT_LT(press, 100);
+  double most = 0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    // The way of the tip into the wall when this joint turns a little.
+    constexpr double kTurn = 1e-5;  // [rad]
+    const auto depth = [&](double turn) {
+      Eigen::VectorXd x = of_three.x;
+      x[i] += turn;
+      return of_three.depth(Arm<kAnyDof>(arm).tip_at(x));
+    };
+    const double lever = std::abs(depth(kTurn) - depth(-kTurn)) / (2 * kTurn);  // [m]
+    most = std::max(most, press * lever / arm.joints[static_cast<std::size_t>(i)].effort);
+  }
+  EXPECT_NEAR(most, 0.5, 1e-6);
 }
 
 TEST(WallTap, OfAnArmOfOneJointTurnsIt) {

@@ -55,6 +55,30 @@ TEST(PlotChoice, MarksWhereTheForceWasOffInEveryPlot) {
   }
 }
 
+// Each run's motors have a band of their own, also those of a re-run.
+TEST(PlotChoice, MarksWhereMotorsOfEachRunWereAtTheirLimit) {
+  const TraceChannels channels{RowLayout(3)};
+  const auto limits = [&](const RunNames& names) {
+    std::vector<std::pair<int, std::string>> found;
+    for (const Band& band : plot_spec(default_plots()[0], channels, names).bands) {
+      const int run = band.channel / channels.count();
+      if (band.channel % channels.count() != static_cast<int>(Channel::limited)) continue;
+      EXPECT_EQ(band.names.at(0), "");
+      found.emplace_back(run, band.names.at(1));
+    }
+    return found;
+  };
+  using Found = std::vector<std::pair<int, std::string>>;
+  EXPECT_EQ(limits({}), (Found{{0, "motor at its limit"}}));
+  EXPECT_EQ(limits(kRerun),
+            (Found{{0, "motor at its limit (recorded)"}, {1, "motor at its limit (re-run)"}}));
+  EXPECT_EQ(limits(kTwin),
+            (Found{{0, "motor at its limit (left)"}, {1, "motor at its limit (right)"}}));
+  EXPECT_EQ(limits(kThree), (Found{{0, "motor at its limit (run 1)"},
+                                   {1, "motor at its limit (run 2)"},
+                                   {2, "motor at its limit (run 3)"}}));
+}
+
 // Three runs differ in more than their laws' colours, wherever a plot has several curves of each.
 TEST(PlotChoice, TellsThreeRunsApartByColourAndSign) {
   const TraceChannels channels{RowLayout(3)};

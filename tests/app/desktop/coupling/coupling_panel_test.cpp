@@ -115,6 +115,10 @@ TEST_F(CouplingWords, AreFewInTheSimpleWindow) {
     EXPECT_EQ(value("Apart at the tip"), "0.62 mm");
     EXPECT_EQ(value("Apart in the joints"), "2.70 mrad");
     EXPECT_EQ(value("Contact force"), "1.25 N");
+    now_.carries = true;
+    draw();
+    EXPECT_EQ(value("Contact force"), "1.25 N + magnet");
+    now_.carries = false;
     EXPECT_TRUE(find("Controller energy E_c"));
     for (const char* left : {"Advanced", "Link", "Passivity", "Energy account", "Energy tanks",
                              "The coupling's own", "Condition (3), device"}) {
@@ -299,6 +303,25 @@ TEST_F(CouplingWords, NameMotorsAtTheirLimit) {
   draw();
   EXPECT_EQ(value("Motor at its limit"), "joint 1, joint 3");
   EXPECT_THAT(hint("Motor at its limit"), HasSubstr("(section 3.1 of the paper)"));
+}
+
+// A warm motor is named in the whole bench and in the simple window, whether or not any motor is at
+// its limit.
+TEST_F(CouplingWords, NameTheMotorThatItsWarmthHoldsBack) {
+  const std::string warm = "The motors are warm: joint elbow gives at most 0.4 of 0.8 N m.";
+  for (const bool everything : {true, false}) {
+    for (const std::vector<int>& limited : {std::vector<int>{}, {1}}) {
+      everything_ = everything;
+      now_.limited = limited;
+      now_.warm.clear();
+      draw();
+      EXPECT_THAT(sentences(), Not(HasSubstr("motors are warm"))) << everything;
+      now_.warm = warm;
+      draw();
+      EXPECT_THAT(sentences(), HasSubstr(warm)) << everything;
+      EXPECT_EQ(find("Motor at its limit").has_value(), !limited.empty()) << everything;
+    }
+  }
 }
 
 TEST_F(CouplingWords, BreakAndRepairPassivityOfTheVirtualArm) {

@@ -1,6 +1,10 @@
 #include "app/desktop/coupling/timing_panel.h"
 
-#include <gmock/gmock.h>
+#include <fmt/format.h>
+
+#include "core/dynamics/arm.h"
+#include "tests/app/desktop/widgets/read_panel.h"
+#include "tests/support/built_in.h"
 
 namespace limpid {
 namespace {
@@ -22,6 +26,84 @@ TEST(TimingPanel, SaysThatTheVirtualArmCatchesUpUntilAStall) {
   const LateTicks words = late_ticks(false);
   EXPECT_THAT(words.missed, HasSubstr("runs faster until it is on time again"));
   EXPECT_THAT(words.after_a_slip, HasSubstr("more than 20 ticks"));
+}
+
+// A device in the loop, in ticks of 1 ms, on the built-in arm, whose file says no delay.
+class TimingOfADevice : public ReadPanel {
+ protected:
+  TimingOfADevice() { p_.kind = CouplingKind::proposed; }
+  // Draws with limits that are computed anew.
+  void draw() {
+    timing_ = DeviceTiming();
+    show([this] {
+      timing_.draw(pace_, arm_, p_, scene_, {pose_.data(), static_cast<std::size_t>(pose_.size())});
+    });
+  }
+  // Lets a thousand readings come, `interval` [s] apart.
+  void read_every(double interval) {
+    pace_.start();
+    for (int k = 0; k < 1000; ++k) {
+      pace_.note(static_cast<std::uint64_t>(k + 1), 0, interval * k);
+    }
+  }
+
+  DeviceTiming timing_;
+  DevicePace pace_;
+  ArmDescription arm_ = test::omni();
+  Eigen::VectorXd pose_ = rest_pose(arm_);
+  Parameters p_;
+  Scene scene_;
+};
+
+TEST_F(TimingOfADevice, SaysWhetherTheDelayIsMeasuredOrSetOrNeither) {
+  draw();
+  EXPECT_EQ(value("delay"), "not measured");
+  EXPECT_THAT(hint("delay"), HasSubstr("`limpid identify` measures this delay."));
+  p_.delay = 3;
+  draw();
+  EXPECT_EQ(value("delay"), "3.00 ms, as set");
+  p_.tick = 0.0005;
+  draw();
+  EXPECT_EQ(value("delay"), "1.50 ms, as set") << "it is set in ticks";
+  arm_.delay = 0.0021;
+  draw();
+  EXPECT_EQ(value("delay"), "2.10 ms, measured") << "whatever is set";
+}
+
+TEST_F(TimingOfADevice, SaysHowOftenReadingsComeAndWhetherThatIsTooSeldom) {
+  draw();
+  EXPECT_EQ(value("readings"), "none yet");
+  EXPECT_FALSE(find("jitter"));
+  read_every(1e-3);
+  draw();
+  EXPECT_EQ(value("readings"), "1000 Hz, every 1.00 ms");
+  EXPECT_FALSE(broken("readings"));
+  EXPECT_EQ(value("jitter"), "0.00 ms, 99 % within 1.00 ms");
+  read_every(2e-3);
+  draw();
+  EXPECT_EQ(value("readings"), "500 Hz, every 2.00 ms");
+  EXPECT_TRUE(broken("readings"));
+  EXPECT_THAT(hint("readings"), HasSubstr("than the ticks of the loop (1.00 ms)"));
+}
+
+// b_d / (T/2 + delay) is largest at once in ticks of 1 ms: b_d / 0.5 ms. Readings every 2 ms and a
+// torque 2 ms late leave b_d / 3 ms of it.
+TEST_F(TimingOfADevice, SaysWhatPaceAndDelayCostInStiffness) {
+  read_every(2e-3);
+  arm_.delay = 0.002;
+  draw();
+  const TipLimits late = tip_limits(arm_, pose_, p_, scene_);
+  const TipLimits prompt = without_delay(arm_, pose_, p_, scene_);
+  const auto of = [](double now, double at_once) {
+    return fmt::format("{:.0f} of {:.0f} N/m", now, at_once);
+  };
+  EXPECT_EQ(value("passive in any hand"), of(prompt.every_hand / 6, prompt.every_hand));
+  const double wall = late.wall(p_.kind).stiffness, wall_at_once = prompt.wall(p_.kind).stiffness;
+  EXPECT_LT(wall, wall_at_once);
+  EXPECT_EQ(value("stiffest wall"), of(wall, wall_at_once));
+  EXPECT_THAT(hint("stiffest wall"),
+              HasSubstr("the proposed law would render without delay. Reason for the limit: " +
+                        late.wall(p_.kind).bound));
 }
 
 }  // namespace

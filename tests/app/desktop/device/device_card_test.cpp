@@ -22,6 +22,7 @@ TEST(DeviceCard, BeginsWithFindingTheDevice) {
 TEST(DeviceCard, SaysAtTheAxesThatTheirCheckFailed) {
   const DeviceSteps asked = steps_of({.present = true, .awaits_check = true, .problem = true});
   EXPECT_EQ(asked.found, done);
+  EXPECT_EQ(asked.arm, done) << "it was chosen";
   EXPECT_EQ(asked.axes, now);
   EXPECT_EQ(asked.force, later);
   const DeviceSteps broken =

@@ -63,13 +63,13 @@ class NotesOfADevice : public ReadPanel {
       edited_.limits = edited_.limits || now.limits;
     });
   }
-  // Clicks a text in the row of an axis.
-  void click_in_row(const char* axis, const std::string& text) {
-    std::optional<ImVec2> row, at;
+  // Clicks a text among those of an axis.
+  void click_in_row(const std::string& axis, const std::string& text) {
+    std::optional<ImVec2> at;
+    bool in_row = false;
     for (const test::DrawnText& each : test::drawn_texts()) {
-      if (each.text.starts_with(axis)) row = each.middle();
-      const bool in_row = row && std::abs(each.middle().y - row->y) < 4;
-      if (each.text == text && in_row) at = each.middle();
+      if (each.text.starts_with("axis ")) in_row = each.text.starts_with(axis);
+      if (each.text == text && in_row && !at) at = each.middle();
     }
     ASSERT_TRUE(at) << text << " of " << axis << " is not in:\n" << words();
     click(*at);

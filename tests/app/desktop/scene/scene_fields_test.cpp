@@ -405,6 +405,29 @@ TEST_F(SceneFields, ListObjectsAndActOnTheSelectedOne) {
                                   "scene.gallery"));
 }
 
+// A double click leaves its object selected, whether or not it was so before.
+TEST_F(SceneFields, LookAtAnObjectThatIsClickedTwice) {
+  open({body_of(Sphere{0.01})});
+  document_.editor().select(std::nullopt);
+  const auto twice = [&] {
+    const auto at = find("it", "objects");
+    ASSERT_TRUE(at) << words();
+    show_mouse(at->middle());
+    frames(20);  // clicks before are over
+    for (const bool down : {true, false, true, false}) {
+      show_mouse_button(0, down);
+      frames(1);
+    }
+    away();
+  };
+  twice();
+  EXPECT_EQ(document_.editor().selected(), 0u);
+  EXPECT_THAT(asked_, ElementsAre("scene.look"));
+  twice();
+  EXPECT_EQ(document_.editor().selected(), 0u);
+  EXPECT_THAT(asked_, ElementsAre("scene.look", "scene.look"));
+}
+
 TEST_F(SceneFields, CannotBeChangedWhileRecording) {
   fixed_ = true;
   open({body_of(Sphere{0.01})});

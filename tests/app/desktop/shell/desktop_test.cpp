@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "app/base/folders.h"
+#include "app/desktop/base/first_steps.h"
 #include "app/desktop/shell/commands.h"
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
@@ -479,6 +480,7 @@ TEST_F(ADesktop, GoesBackToTheSceneWhenWhatIsRecordedIsComplete) {
   desktop->lead.begin_elsewhere();
   desktop->world.open_scene(data_dir() / "assets/scenes/spheres.toml");
   ASSERT_TRUE(until([&] { return document().file() != scene; }));
+  EXPECT_TRUE(has("rubber"));
   desktop->lead.note_program();
   EXPECT_TRUE(desktop->lead.settings_to_keep().scene.empty());
   record_something();
@@ -488,7 +490,7 @@ TEST_F(ADesktop, GoesBackToTheSceneWhenWhatIsRecordedIsComplete) {
   ASSERT_TRUE(until([&] { return desktop->lead.end(false); }));
   EXPECT_EQ(document().file(), scene);
   EXPECT_TRUE(desktop->settings.scene.empty());
-  EXPECT_FALSE(has("rubber, 500 N/m"));
+  EXPECT_FALSE(has("rubber"));
 }
 
 // A damping set for the virtual arm is not the device's: verdict and recording follow the loop's
@@ -793,6 +795,29 @@ TEST_F(ADesktop, MarksAChangeWhereItActsHoweverLongAFrameTakes) {
   EXPECT_NEAR(mark.time, history.time(first), 0.05);
 }
 
+TEST_F(ADesktop, KeepsAMarkInTheRecordingAtTheTimeThatThePlotsShow) {
+  record_something();
+  frames(3);
+  std::vector<double> shown;  // [s]
+  const auto mark = [&] {
+    std::this_thread::sleep_for(150ms);  // the loop is further than the plots
+    const History& history = desktop->live.stage().history;
+    shown.push_back(history.end_time() - history.offset());
+    desktop->live.note(desktop->live.now(), "here");
+    frames(5);
+  };
+  mark();
+  mark();
+  desktop->world.toggle_recording();
+  ASSERT_TRUE(until([&] { return said("Recorded"); }));
+  const Session session = read_session(recordings()[0]);
+  ASSERT_EQ(session.marks.size(), 2u);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const double kept = session.at(session.marks[i].tick, Column::time)[0];
+    EXPECT_NEAR(kept, shown[i], session.info.tick / 2);
+  }
+}
+
 TEST_F(ADesktop, RunsLanesWhoseSettingsAreTheirOwnAndWhoseWorldIsNot) {
   frames(5);
   LaneSettings& lanes = desktop->settings.lanes;
@@ -834,6 +859,41 @@ TEST_F(ADesktop, RunsLanesWhoseSettingsAreTheirOwnAndWhoseWorldIsNot) {
   EXPECT_EQ(desktop->shown.rows().size(), 1u);
   EXPECT_FALSE(desktop->live.stage().names().several());
   EXPECT_NE(run_command("session.drop_run", *desktop), "") << "one is left";
+}
+
+// A first step is done once its thing was done; settings of broken passivity are nobody's choice.
+TEST_F(ADesktop, NotesEachFirstStepThatWasDone) {
+  const auto steps = [&] {
+    std::vector<FirstStep> all;
+    for (const FirstStepInfo& each : kFirstSteps) {
+      if (done(desktop->settings, each.step)) all.push_back(each.step);
+    }
+    return all;
+  };
+  using testing::ElementsAre;
+  EXPECT_THAT(steps(), testing::IsEmpty());
+  desktop->tuning.break_passivity();
+  frames(3);
+  document().undo();
+  frames(3);
+  EXPECT_THAT(steps(), testing::IsEmpty());
+  run("session.twin");
+  frames(3);
+  EXPECT_THAT(steps(), ElementsAre(FirstStep::twin));
+  run("session.twin");
+  frames(3);
+  desktop->tuning.next_law();
+  frames(3);
+  EXPECT_THAT(steps(), ElementsAre(FirstStep::law, FirstStep::twin));
+  desktop->settings.parameters().eta = 0.77;
+  frames(3);
+  EXPECT_THAT(steps(), ElementsAre(FirstStep::law, FirstStep::eta, FirstStep::twin));
+  desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  desktop->playback.shown()->player().play();
+  frames(3);
+  EXPECT_THAT(steps(),
+              ElementsAre(FirstStep::law, FirstStep::eta, FirstStep::twin, FirstStep::play));
 }
 
 TEST_F(ADesktop, TakesBackAPresetOfAnyLane) {

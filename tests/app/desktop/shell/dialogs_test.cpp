@@ -458,6 +458,28 @@ TEST_F(Dialog, OfIdentifyingTriesASimulatedDevice) {
   EXPECT_TRUE(until([&] { return !desktop->identify.moving(); }));
 }
 
+// A motion that was stopped is no result: the dialog asks again and says so, until the next one
+// begins.
+TEST_F(Dialog, OfIdentifyingSaysThatItWasStopped) {
+  const std::string title = "Identify the device";
+  run("device.identify");
+  frames(4);
+  EXPECT_EQ(desktop->identify.wrong(), "");
+  EXPECT_THAT(words(title), Not(HasSubstr("Ended:")));
+  for (int round = 0; round < 2; ++round) {
+    click("Begin (Enter)", title);
+    ASSERT_TRUE(until([&] { return desktop->identify.moving(); }));
+    EXPECT_EQ(desktop->identify.wrong(), "") << "of this one";
+    frames(3);
+    click("Stop (Esc)", title);
+    ASSERT_TRUE(until([&] { return !desktop->identify.moving(); }));
+    frames(3);
+    EXPECT_EQ(desktop->identify.phase(), IdentifyController::Phase::asking);
+    EXPECT_EQ(desktop->identify.wrong(), "stopped");
+    EXPECT_THAT(words(title), HasSubstr("Ended: stopped\n"));
+  }
+}
+
 TEST_F(Dialog, OfExperimentsListsThemAndRunsOne) {
   run("experiments.show");
   frames(4);

@@ -1,4 +1,5 @@
 // The dialog of a new sweep: what it offers, refuses and starts.
+#include <fmt/format.h>
 #include <imgui_internal.h>
 
 #include "app/sweep/measures.h"
@@ -59,6 +60,23 @@ class ANewSweep : public WholeWindow {
   std::string says() { return sentences(kDialog); }
   fs::path sweeps() const { return dir / "data/limpid/sweeps"; }
 };
+
+TEST_F(ANewSweep, NamesTheLawAndSaysWhereEtaDoesNothing) {
+  const auto with = [&](CouplingKind kind) {
+    desktop->settings.parameters().kind = kind;
+    frames(3);
+    return says();
+  };
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    const LawInfo& law = info(CouplingKind{i});
+    const std::string said = with(CouplingKind{i});
+    EXPECT_THAT(said, HasSubstr(fmt::format("Law: {}.", law.label)));
+    EXPECT_EQ(said.find("It does not use \xCE\xB7") == std::string::npos, law.takes_eta) << law.key;
+  }
+  choose("##first", "coupling.kind");
+  frames(3);
+  EXPECT_THAT(says(), Not(HasSubstr("Law: ")));
+}
 
 TEST_F(ANewSweep, ProposesEtaOverItsRangeAndMeasuresTheEnergy) {
   const std::string said = says();

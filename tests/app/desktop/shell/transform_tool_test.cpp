@@ -1,5 +1,8 @@
 #include "app/desktop/scene/transform_tool.h"
 
+#include <thread>
+
+#include "app/desktop/scene/document.h"
 #include "tests/app/desktop/shell/whole_window.h"
 
 namespace limpid {
@@ -48,12 +51,17 @@ TEST_F(ATransform, ByAKeyIsGivenUpByTheOtherButton) {
   run("object.move");
   point_at({middle().x + 60, middle().y});
   EXPECT_GT((at() - before).norm(), 0.005);
+  std::this_thread::sleep_for(2 * UndoHistory<int>::kPause);  // the next change is another step
+  point_at({middle().x + 90, middle().y});
   show_mouse_button(1, true);
   frames(1);
   show_mouse_button(1, false);
   frames(2);
   EXPECT_FALSE(desktop->transform.follows());
   EXPECT_LT((at() - before).norm(), 1e-12);
+  desktop->document.undo();
+  frames(2);
+  EXPECT_EQ(desktop->document.scene().objects.size(), place_) << "what was given up is no step";
 }
 
 }  // namespace
