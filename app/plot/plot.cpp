@@ -59,7 +59,7 @@ std::string short_text(double value) {
 // and that there is room for.
 std::string end_text(const AxisMap& map, double unit, double value) {
   const auto fits = [](const std::string& text) {
-    return text_size(Face::small, text).x <= end_label_width();
+    return text_size(Face::small, text).x <= end_label_width() - 6 * current_scale();
   };
   const double shown = value / unit;
   if (!map.log) {
