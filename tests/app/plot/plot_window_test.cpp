@@ -158,7 +158,7 @@ TEST_F(APlot, WritesValuesAtTheEndsThatFitIntoTheMargin) {
             const ScreenRect area{{60, 0}, {200, 400}};
             const ScreenRect outer{{0, 0}, {200 + 6 * scale + end_label_width(), 420}};
             ImDrawList& list = *ImGui::GetForegroundDrawList();
-            const PlotFrame in{list, current_palette(),   1,        outer,
+            const PlotFrame in{list, current_palette(),   scale,    outer,
                                area, {1.0 / 140, 0, 140}, {{0, 1}}, {limits, log}};
             const int before = list.VtxBuffer.Size;
             draw_end_labels(in, spec, history, 0);
