@@ -81,8 +81,10 @@ void ExperimentsPanel::start(const Experiment& experiment) {
 }
 
 void ExperimentsPanel::take() {
+  bool ended = false;
   try {
     if (auto outcome = running_.take()) {
+      ended = true;
       Verdict verdict{.outcome = std::move(*outcome),
                       .file = experiments_dir() / (std::string(current_->name) + ".png"),
                       .trials = sessions_of(*current_)};
@@ -93,12 +95,13 @@ void ExperimentsPanel::take() {
       if (!chosen_) shown_ = current_;
     }
   } catch (const std::exception& e) {
-    if (stopping_) {
-      notices_.say("The experiments have stopped. Finished trials are kept and are not run again.");
-    } else {
-      notices_.say(fmt::format("{}: {}", current_->name, e.what()), true);
-    }
+    ended = true;
+    if (!stopping_) notices_.say(fmt::format("{}: {}", current_->name, e.what()), true);
     queue_.clear();
+  }
+  // An experiment may end by itself before it hears that it is to stop.
+  if (ended && std::exchange(stopping_, false)) {
+    notices_.say("The experiments have stopped. Finished trials are kept and are not run again.");
   }
   if (!running_.busy() && queue_.empty()) begun_ = 0;
   if (!running_.busy() && !queue_.empty()) {
