@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "app/desktop/base/settings.h"
 #include "app/desktop/widgets/modal.h"
