@@ -42,10 +42,10 @@ std::string processor() {
 }  // namespace
 
 const std::string& program_build() {
-  static const std::string text =
-      fmt::format("limpid {}, {}, build {}{}{}", program_version(), kCompiler,
-                  program_digest() == 0 ? "unknown" : fmt::format("{:016x}", program_digest()),
-                  kBetween, processor());
+  static const std::string digest =
+      program_digest() == 0 ? "unknown" : fmt::format("{:016x}", program_digest());
+  static const std::string text = fmt::format("limpid {}, {}, build {}{}{}", program_version(),
+                                              kCompiler, digest, kBetween, processor());
   return text;
 }
 
