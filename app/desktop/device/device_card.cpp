@@ -116,7 +116,7 @@ void draw_axes(DeviceController& devices, StepState state) {
   if (check != nullptr) {
     ImGui::TextWrapped("%s", what_to_do(check->stage));
     if (ImGui::Button("Stop (Esc)")) devices.cancel_check();
-  } else if (devices.awaits_check()) {
+  } else if (state != StepState::later && devices.awaits_check()) {
     ImGui::TextWrapped("%s", devices.problem().c_str());
     if (noted_button(kCheckAxes)) devices.start_check();
     tooltip(
@@ -192,7 +192,7 @@ DeviceSituation situation_of(DeviceController& devices, const LiveLoop& loop) {
           .asks_for_arm = devices.hub().may_say_arm() && devices.hub().asks_for_arm(),
           .checking = devices.check() != nullptr,
           .check_failed = devices.check_failed(),
-          .awaits_check = devices.awaits_check(),
+          .awaits_check = there && devices.awaits_check(),
           .in_place = in_place,
           .measured = !devices.hub().notes(devices.hub().in_use()).arm.empty(),
           .pushes = in_place && loop.snapshot().arming == Arming::on,
