@@ -266,7 +266,7 @@ bool Loop::State::at_tip_limit() const {
 }
 
 void Loop::State::in_si(std::span<const double> of_rig, std::span<double> into) const noexcept {
-  std::ranges::copy(of_rig, into.begin());
+  std::copy_n(of_rig.data(), of_rig.size(), into.data());
   for (const SessionUnits::Scaled& each : units.scaled()) {
     double& x = layout.in(into, each.column)[static_cast<std::size_t>(each.part)];
     x = SessionUnits::filed(each, x).value;

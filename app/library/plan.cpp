@@ -50,8 +50,9 @@ SceneDocument read_scene_of(const LoopOptions& options, const ArmDescription& ar
   if (!options.scene_text.empty()) {
     return parse_scene(options.scene_text, "scene_text", fs::current_path(), arm);
   }
-  return read_scene(options.scene.empty() ? default_scene(arm) : file_of(options.scene, "scenes"),
-                    arm);
+  if (!options.scene.empty()) return read_scene(file_of(options.scene, "scenes"), arm);
+  const bool built_in = options.arm.empty() && options.arm_text.empty() && options.tip.empty();
+  return read_scene(built_in ? default_scene() : default_scene(arm), arm);
 }
 
 Parameters chosen(const LoopOptions& options, Parameters base) {
@@ -150,6 +151,8 @@ HandPath hand_of_rows(std::span<const double> rows) {
   }
   std::vector<double> time;
   std::vector<Vec3> position;
+  time.reserve(rows.size() / kNumbers);
+  position.reserve(rows.size() / kNumbers);
   for (std::size_t at = 0; at < rows.size(); at += kNumbers) {
     const auto row = rows.subspan(at, kNumbers);
     const double t = row[0] - rows[0];

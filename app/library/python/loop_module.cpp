@@ -49,7 +49,7 @@ Array as_rows(std::vector<double>&& all, std::size_t stride) {
 // columns.
 py::tuple run(const SimulatedLoop& loop, const Array& path, double duration,
               const std::vector<std::size_t>& kept) {
-  const std::vector<double> rows(path.data(), path.data() + path.size());
+  const std::span<const double> rows(path.data(), static_cast<std::size_t>(path.size()));
   std::vector<double> all;
   const double seconds = duration > 0 || rows.size() < 4 ? duration : rows[rows.size() - 4];
   const std::size_t width = loop.row().size();

@@ -37,7 +37,8 @@ void each_contact(std::span<double> points, std::span<const double> forces, cons
 bool zero(std::span<const double> v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 // Returns whether a point was never set: a zero with a sign was computed.
 bool never_set(std::span<const double> v) {
-  return zero(v) && !std::signbit(v[0]) && !std::signbit(v[1]) && !std::signbit(v[2]);
+  const auto bits = [&](std::size_t i) { return std::bit_cast<std::uint64_t>(v[i]); };
+  return (bits(0) | bits(1) | bits(2)) == 0;
 }
 
 }  // namespace
