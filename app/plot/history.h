@@ -98,8 +98,10 @@ struct PlotMark {
   std::string label;
 };
 
-inline constexpr const char* kResetMark = "reset";  // key of the mark where a new run begins
-inline constexpr const char* kNoteMark = "note";    // key of marks that people set
+// Keys of marks: where a new run or a recording begins, and those that people set.
+inline constexpr const char* kResetMark = "reset";
+inline constexpr const char* kRecordingMark = "rec";
+inline constexpr const char* kNoteMark = "note";
 
 // Rows of `channels` values in time order. The time axis only ever grows. Where the time handed to
 // append() steps back (a reset), the axis goes on after a short gap and offset() tells the

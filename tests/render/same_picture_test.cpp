@@ -62,10 +62,10 @@ TEST(SamePicture, IsAnotherWhereAnythingAloneIsFurtherOffThanTheTolerance) {
       {"hand", [](ViewState& s) -> Vec3& { return s.hand_target; }},
       {"contact", [](ViewState& s) -> Vec3& { return s.contacts[0].position; }},
       {"shade", [](ViewState& s) -> Vec3& { return s.shade->position; }}};
-  for (const auto& [what, place] : places) {
-    expect_another(what, [&](ViewState& s) { place(s) += kFar; });
-    expect_the_same(what, [&](ViewState& s) { place(s) += kNear; });
-    expect_another(what, [&](ViewState& s) { place(s).y() = std::nan(""); });
+  for (const auto& each : places) {
+    expect_another(each.first, [&](ViewState& s) { each.second(s) += kFar; });
+    expect_the_same(each.first, [&](ViewState& s) { each.second(s) += kNear; });
+    expect_another(each.first, [&](ViewState& s) { each.second(s).y() = std::nan(""); });
   }
 }
 
@@ -90,9 +90,9 @@ TEST(SamePicture, IsAnotherWhereAnArrowIsLonger) {
       {"hand", [](ViewState& s) -> Vec3& { return s.hand_force; }},
       {"twin's hand", [](ViewState& s) -> Vec3& { return s.beside[0].hand_force; }},
       {"twin's contact", [](ViewState& s) -> Vec3& { return s.beside[0].contacts[0].force; }}};
-  for (const auto& [what, force] : forces) {
-    expect_another(what, [&](ViewState& s) { force(s).x() += 0.006; });
-    expect_the_same(what, [&](ViewState& s) { force(s).x() += 0.004; });
+  for (const auto& each : forces) {
+    expect_another(each.first, [&](ViewState& s) { each.second(s).x() += 0.006; });
+    expect_the_same(each.first, [&](ViewState& s) { each.second(s).x() += 0.004; });
   }
 }
 
@@ -128,8 +128,8 @@ TEST(SamePicture, IsAnotherWhereASwitchIs) {
       {"ghost", &ViewState::show_ghost}, {"error", &ViewState::show_error},
       {"trail", &ViewState::show_trail}, {"forces", &ViewState::show_forces},
       {"grid", &ViewState::show_grid},   {"joints", &ViewState::show_joints}};
-  for (const auto& [what, field] : switches) {
-    expect_another(what, [&](ViewState& s) { s.*field = !(s.*field); });
+  for (const auto& each : switches) {
+    expect_another(each.first, [&](ViewState& s) { s.*each.second = !(s.*each.second); });
   }
   expect_another("theme", [](ViewState& s) { s.theme = Theme::light; });
 }

@@ -73,7 +73,7 @@ ArmDescription bent_arm(int joints) {
 
 // A box around link i from its origin to its end.
 Box body(const ArmDescription& arm, int i) {
-  Box box(Vec3(Vec3::Zero()));
+  Box box(Vec3{Vec3::Zero()});
   box.extend(end_of(arm, static_cast<std::size_t>(i)));
   return {box.min() - Vec3(0.03, 0.04, 0.05), box.max() + Vec3(0.03, 0.04, 0.05)};
 }

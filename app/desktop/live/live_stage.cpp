@@ -222,7 +222,7 @@ void LiveStage::record(const RunPlan& plan, const fs::path& file, bool replaces)
 void LiveStage::tell(const RecordingNews& news) {
   const Recorded& last = session_.last_recording();
   if (!news.note.empty()) notices_.say(news.note);
-  if (news.began) mark("recording", "rec");
+  if (news.began) mark("recording", kRecordingMark);
   if (news.ended) recorded_ = last.file;
   if (news.complete) {
     const std::string missing =

@@ -8,10 +8,16 @@
 
 namespace limpid {
 
+// Counts the marks of what is recorded or played, else all in the plots.
 std::size_t Marking::count() const {
   if (playback_.on()) return playback_.shown()->marks().size();
   const auto& marks = live_.stage().history.marks();
-  return static_cast<std::size_t>(std::ranges::count(marks, kNoteMark, &PlotMark::key));
+  auto first = marks.begin();
+  if (live_.loop().recording()) {
+    first = std::ranges::find(marks.rbegin(), marks.rend(), kRecordingMark, &PlotMark::key).base();
+  }
+  return static_cast<std::size_t>(std::count_if(
+      first, marks.end(), [](const PlotMark& mark) { return mark.key == kNoteMark; }));
 }
 
 void Marking::begin() {

@@ -23,7 +23,7 @@ History circle(int rows) {
   return history;
 }
 
-constexpr Curve kCurve{.channel = 1, .across = 0};
+const Curve kCurve{.channel = 1, .across = 0};
 constexpr TraceArea kArea{{{-1, 1}}, {{-1, 1}}, 200, 100};
 
 Trace cross(const History& history) {

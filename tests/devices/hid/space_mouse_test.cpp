@@ -75,9 +75,9 @@ TEST(SpaceMouse, MissesAnAxis) {
 TEST(SpaceMouse, TakesTheNearerEndOfItsRangeForFull) {
   for (const bool low_is_nearer : {true, false}) {
     test::Bytes descriptor = test::space_navigator();
-    const auto range = std::ranges::search(descriptor, test::Bytes{0x16, 0xA2, 0xFE, 0x26, 0x5E});
-    ASSERT_FALSE(range.empty());
-    auto at = descriptor.begin() + (range.begin() - descriptor.begin());
+    const test::Bytes range = {0x16, 0xA2, 0xFE, 0x26, 0x5E};
+    auto at = std::search(descriptor.begin(), descriptor.end(), range.begin(), range.end());
+    ASSERT_NE(at, descriptor.end());
     if (low_is_nearer) {
       at[1] = 0xD4, at[2] = 0xFE;  // -300
     } else {

@@ -131,8 +131,8 @@ TEST_F(ColoursOfASweep, HaveTheLineOfTheoryOverThem) {
   open(kColoured);
   ASSERT_EQ(map().lines.size(), 1u);
   ASSERT_EQ(map().lines[0].style, Series::Style::dashed);
-  const auto [left, right] = map().x_range;
-  const auto [low, high] = map().y_range;
+  const double left = map().x_range.first, right = map().x_range.second;
+  const double low = map().y_range.first, high = map().y_range.second;
   const auto place = [&](const FigurePoint& p) {
     const double across = std::log(p.x / left) / std::log(right / left);
     const double up = (p.y - low) / (high - low);

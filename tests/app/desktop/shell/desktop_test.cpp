@@ -818,6 +818,27 @@ TEST_F(ADesktop, KeepsAMarkInTheRecordingAtTheTimeThatThePlotsShow) {
   }
 }
 
+TEST_F(ADesktop, CountsTheMarksOfEachRecordingAnew) {
+  const auto mark = [&] {
+    desktop->marking.begin();
+    const std::string offered = desktop->marking.text();
+    desktop->marking.accept(offered);
+    frames(3);
+    return offered;
+  };
+  EXPECT_EQ(mark(), "mark 1");
+  for (int recording = 0; recording < 2; ++recording) {
+    record_something();
+    frames(3);
+    EXPECT_EQ(mark(), "mark 1");
+    EXPECT_EQ(mark(), "mark 2");
+    desktop->world.toggle_recording();
+    ASSERT_TRUE(until([&] { return said("Recorded"); }));
+    desktop->notices.clear();
+  }
+  EXPECT_EQ(mark(), "mark 6") << "in the plots alone";
+}
+
 TEST_F(ADesktop, RunsLanesWhoseSettingsAreTheirOwnAndWhoseWorldIsNot) {
   frames(5);
   LaneSettings& lanes = desktop->settings.lanes;

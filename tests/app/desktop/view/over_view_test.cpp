@@ -130,7 +130,8 @@ TEST_F(SignsOverThePicture, TellNoticesAtTheFootWhereATipIsAtTheTop) {
   view_ = {{100, 50}, {1300, 700}};
   const ScreenRect tip{{view_.min.x, view_.min.y}, {view_.max.x, view_.min.y + 100}};
   const float middle = (view_.min.y + view_.max.y) / 2;
-  for (const auto& [crowd, low] : {std::pair(Crowd{}, false), {Crowd{{tip}, {}}, true}}) {
+  for (const bool low : {false, true}) {
+    const Crowd crowd = low ? Crowd{{tip}, {}} : Crowd{};
     show([&] { signs.draw(notices, view_, signs_, crowd); });
     const auto said = find("Started over, at rest.");
     ASSERT_TRUE(said);
