@@ -74,7 +74,8 @@ struct DeviceReading {
   double age = 0;                    // time since it arrived [s]
   bool hand = true;                  // dead-man switch closed; true where there is none
   bool fault = false;                // the device says that it is not well
-  std::uint32_t buttons = 0;         // one bit each
+  std::uint32_t buttons = 0;         // pressed ones, one bit each
+  std::uint32_t buttons_known = 0;   // those that a report has told of, one bit each
   std::uint32_t lapses = 0;          // how often the torque ran out, as no new one came in time
   NoForce no_force = NoForce::none;  // why the device itself has no force
   bool calibrated = true;            // a fault besides, if not
@@ -130,16 +131,16 @@ inline bool await_reading(Device& device, std::chrono::milliseconds longest) {
   return reading.count > 0;
 }
 
-// Buttons that went down after they were seen up: one held while its device is plugged in asks for
-// nothing.
+// Buttons that went down after they were seen up. A button that is held while its device is plugged
+// in asks for nothing, however late the device's first report comes.
 class ButtonPresses {
  public:
   void forget() { down_ = ~0u; }
 
   // Takes the buttons pressed since the last call; one bit each, as in DeviceReading.
-  std::uint32_t take(std::uint32_t now) {
-    const std::uint32_t pressed = now & ~down_;
-    down_ = now;
+  std::uint32_t take(const DeviceReading& reading) {
+    const std::uint32_t pressed = reading.buttons & reading.buttons_known & ~down_;
+    down_ = reading.buttons | ~reading.buttons_known;
     return pressed;
   }
 

@@ -17,6 +17,7 @@
 #include "app/run/model_report.h"
 #include "app/run/provenance.h"
 #include "app/run/reach_check.h"
+#include "app/run/run_notes.h"
 #include "app/run/scene_flaws.h"
 #include "app/stage/load_files.h"
 #include "app/story/story.h"
@@ -84,6 +85,9 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
       fmt::format("             condition (3) {}; by equation (25) the proposed law is passive at "
                   "an eta of {:.2f} or above",
                   a.condition3.holds ? "is met" : "is BROKEN", a.eta_min));
+  if (std::string weak = weak_spring_text(arm, p); !weak.empty()) {
+    report.warnings.push_back(std::move(weak));
+  }
   if (!a.condition3.holds) {
     report.warnings.push_back(
         "condition (3) is not met with these settings: reduce coupling.k_vc or coupling.b_vc, or "

@@ -304,7 +304,7 @@ void say_about(const RunPlan& plan) {
   for (const std::string& warning : plan.arm.warnings) {
     fmt::print(stderr, "limpid: warning: {}\n", warning);
   }
-  for (const std::string& note : notes_on(plan.parameters)) {
+  for (const std::string& note : notes_on(plan.arm, plan.parameters)) {
     fmt::print(stderr, "limpid: note: {}\n", note);
   }
   const bool again = plan.hand.tick > 0;  // a recording has its own settings

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
@@ -116,6 +117,7 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
   Limits set(arm, limits);
   const auto joints = static_cast<std::size_t>(device.traits().dof);
   std::atomic<bool> done = false;
+  std::optional<std::uint32_t> lapses;  // none known before the first tick
   {
     HapticThread thread(ask);
     const auto tick = [&](const TickTiming& timing) {
@@ -125,13 +127,15 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
         note(progress, CheckEnd::stopped);
       }
       DeviceReading reading;
-      const CheckEnd ill = why_not_well(device.read(reading), reading);
+      const bool here = device.read(reading), first = !lapses;
+      const bool gap = health_of(reading, here, true, timing.dt, 0, lapses).gap && !first;
+      const CheckEnd ill = why_not_well(here, reading);
       const bool well = ill == CheckEnd::none;
       if (!well) note(progress, ill);
       const std::span<const double> x = std::span(reading.x).first(joints);
       const double T = timing.periods * 1e-3;
       if (well && !set.allow(x, T)) check.exceed();
-      device.write(set.within(check.step({x, T, well}), T));
+      device.write(set.within(check.step({x, T, well, gap}), T));
       progress.axis = check.axis();
       progress.stage = check.stage();
       done = check.done();

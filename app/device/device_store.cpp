@@ -32,6 +32,20 @@ void each_joint(const TomlTable& entry, const char* key, const char* allowed, co
   }
 }
 
+// Refuses limits outside of their table, and tables that are unknown: nobody would read them, and
+// the device would have its widest limits.
+void refuse_limits_elsewhere(const TomlTable& table, const std::vector<const char*>& known) {
+  table.refuse_strays(
+      known,
+      [](std::string_view key, const toml::node& node) {
+        return node.is_table() || key.find("limit") != std::string_view::npos ||
+               std::ranges::any_of(kSafetyLimits, [&](const auto& limit) {
+                 return key.find(limit.key) != std::string_view::npos;
+               });
+      },
+      "limits under [device.\"ID\".limits] only");
+}
+
 void read_axes(const TomlTable& entry, std::vector<AxisAdjustment>& axes) {
   each_joint(entry, "axis", "a list of tables, one per joint",
              [&](std::size_t i, const toml::node& node) {
@@ -41,6 +55,7 @@ void read_axes(const TomlTable& entry, std::vector<AxisAdjustment>& axes) {
                std::vector<const char*> keys;
                add_keys(kAxisFields, axis, keys);
                each.refuse_slips(keys);
+               refuse_limits_elsewhere(each, keys);
                read_fields(each, kAxisFields, axis);
                return true;
              });
@@ -61,6 +76,7 @@ DeviceNotes read_notes(const TomlTable& entry) {
   add_keys(kNotesFields, notes, known);
   add_keys(kPidFields, notes.pid, known);
   entry.refuse_slips(known);
+  refuse_limits_elsewhere(entry, known);
   read_fields(entry, kNotesFields, notes);
   read_fields(entry, kPidFields, notes.pid);
   if (const auto limits = entry.table("limits")) {
@@ -70,6 +86,9 @@ DeviceNotes read_notes(const TomlTable& entry) {
     read_fields(*limits, kSafetyLimits, notes.limits);
   }
   if (const auto forces = entry.table("compensation")) {
+    std::vector<const char*> keys;
+    add_keys(kOwnForcesFields, notes.compensation, keys);
+    refuse_limits_elsewhere(*forces, keys);
     read_fields(*forces, kOwnForcesFields, notes.compensation);
   }
   read_axes(entry, notes.axes);
@@ -182,7 +201,9 @@ DeviceStore load_device_store(const fs::path& file) {
   try {
     const toml::table table = parse_store(file);
     store.in_use = TomlTable(table, file.string(), "").text("in_use").value_or("");
-    TomlTable(table, file.string(), "").refuse_slips({"in_use", "device"});
+    const TomlTable whole(table, file.string(), "");
+    whole.refuse_slips({"in_use", "device"});
+    refuse_limits_elsewhere(whole, {"in_use", "device"});
     const toml::table* devices = devices_in(table, file);
     if (devices == nullptr) return store;
     for (const auto& [key, node] : *devices) {

@@ -130,6 +130,10 @@ LoopError::~LoopError() = default;
 
 struct Loop::State {
   static constexpr std::uint64_t kMeasured = 500;  // ticks
+  // Real motors trip where ticks come faster than this part of the period allows, for longer than a
+  // late tick is made up for: speeds would be judged too small.
+  static constexpr double kFaster = 0.1;
+  static constexpr double kMostLead = 0.05;  // [s]
 
   State(LibraryPlan read, const LoopOptions& options, LoopArm of);
 
@@ -145,6 +149,11 @@ struct Loop::State {
     measured = std::min(measured + 1, kMeasured);
     const double share = 1 / static_cast<double>(measured);
     mean_period += share * (elapsed - mean_period);
+    lead = std::clamp(lead + (1 - kFaster) * plan.parameters.tick - elapsed, 0.0, 2 * kMostLead);
+  }
+  std::string pace_text() const {
+    return fmt::format("ticks come every {:.2g} ms, not every {:.2g} ms as `period` says",
+                       1e3 * mean_period, 1e3 * plan.parameters.tick);
   }
   bool at_motor_limit() const;  // after a tick, as at_tip_limit()
   bool at_tip_limit() const;
@@ -174,6 +183,8 @@ struct Loop::State {
   Vec3 first_tip = Vec3::Zero();  // of the device before the first tick [m]
   double mean_period = 0;  // time between ticks as measured, over about kMeasured of them [s]
   std::uint64_t measured = 0;
+  double lead = 0;     // of the ticks over the time that has passed [s]
+  bool early = false;  // for which force has tripped
   // Positions and one more of the reading that was not one a joint; 0 once force may be back.
   std::size_t wrong_count = 0;
   const char* refused = nullptr;  // what is wrong with a reading of simulated motors
@@ -438,10 +449,8 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   const double T = s.plan.parameters.tick;
   const bool timed = std::isfinite(reading.elapsed) && reading.elapsed >= 0;
   double elapsed = timed ? reading.elapsed : 0;
-  if (elapsed == 0 && s.real && s.ticks > 0) {
-    elapsed = seconds_between(s.before, now);
-    s.measure(elapsed);
-  }
+  if (elapsed == 0 && s.real && s.ticks > 0) elapsed = seconds_between(s.before, now);
+  if (s.real && s.ticks > 0) s.measure(elapsed);
   s.before = now;
   const bool fresh = reading.fresh || !s.real;
   const bool whole = s.device->whole(reading.position, fresh);
@@ -454,13 +463,15 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   if (wrong) s.device->stop();
   if (wrong && !s.real) return s.device->torque();  // a simulated device cannot trip
   const double passed = elapsed > 0 ? elapsed : T;
-  s.device->take(reading.position, fresh, reading.hand, reading.fault || !timed, passed);
+  const bool early = s.lead > State::kMostLead;
+  s.device->take(reading.position, fresh, reading.hand, reading.fault || !timed || early, passed);
   RigInput input{{s.tip(), 1}, s.force.take()};
   constexpr double kMostPeriods = 1e6;
   input.periods = static_cast<int>(std::clamp(std::round(passed / T), 1.0, kMostPeriods));
   input.dt = elapsed;
   s.step(input);
   if (whole && s.rig->force_state() != ForceState::lost) s.wrong_count = 0;
+  s.early = early || (s.early && s.rig->force_state() == ForceState::fault);
   return s.device->torque();
 }
 
@@ -475,6 +486,7 @@ std::string DeviceLoop::force_text() const {
                        s.wrong_count - 1, joints());
   }
   if (s.refused != nullptr) return fmt::format("force off: {}", s.refused);
+  if (s.early) return "force off: " + s.pace_text();
   const ForceState why = s.rig->force_state();
   std::string text = limpid::force_text(why);
   if (why == ForceState::frozen && force_share() > 0) {
@@ -500,8 +512,7 @@ std::string DeviceLoop::force_text() const {
   const double T = period();
   constexpr double kOff = 0.2;  // of the period
   if (s.measured == State::kMeasured && std::abs(s.mean_period - T) > kOff * T) {
-    all.push_back(fmt::format("ticks come every {:.2g} ms, not every {:.2g} ms as `period` says",
-                              1e3 * s.mean_period, 1e3 * T));
+    all.push_back(s.pace_text());
   }
   return fmt::format("{}", fmt::join(all, "; "));
 }

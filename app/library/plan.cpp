@@ -139,7 +139,8 @@ LibraryPlan read_plan(const LoopOptions& options, LoopArm of) {
   if (const std::string text = fit_text(fit); !text.empty()) {
     all.notes.push_back("gains fitted to the arm, except those that are set: " + text);
   }
-  for (std::string& note : notes_on(plan.parameters)) all.notes.push_back(std::move(note));
+  for (std::string& note : notes_on(plan.arm, plan.parameters))
+    all.notes.push_back(std::move(note));
   return all;
 }
 

@@ -81,14 +81,34 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   led_ = false;
   probing_ = false;
   force_.take();  // what was asked before has no meaning now
+  tripped_ = false;
+  tripped_at_.reset();
   beat_.store(MonotonicTime{}.now());
   thread_.start(
       nanoseconds(std::llround(p.tick * 1e9)), [this](const TickTiming& timing) { tick(timing); },
       in_place_ ? Overdue::given_up : Overdue::run);
 }
 
+void LiveLoop::note_trip() {
+  const bool tripped = in_place_ && snapshot().arming == Arming::tripped;
+  if (tripped && !std::exchange(tripped_, tripped)) tripped_at_ = MonotonicTime{}.now();
+  tripped_ = tripped;
+}
+
+bool LiveLoop::toggle_force() {
+  constexpr std::chrono::seconds kFright{1};
+  if (snapshot().armed()) {
+    cut();
+    return true;
+  }
+  if (in_place_ && tripped_at_ && MonotonicTime{}.now() - *tripped_at_ < kFright) return false;
+  arm();
+  return true;
+}
+
 void LiveLoop::close() {
   thread_.stop();
+  if (slot_ != nullptr && slot_->device) slot_->device->stop();
   if (rig_ && !in_place_) virtual_armed_ = rig_->force().armed();
   if (rig_ && in_place_) {
     rig_->present(home_);

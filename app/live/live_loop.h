@@ -148,6 +148,9 @@ class LiveLoop {
   void arm() { force_.arm(); }
   // Cuts the force from the next tick on; wins over arm() within the same tick. For any thread.
   void cut() { force_.cut(); }
+  // Cuts the force if it is on, else asks for it. Returns false, and asks for nothing, within a
+  // second after a device's force tripped: a person who presses then wants it to be off.
+  bool toggle_force();
 
   // Sets the controls, and shows that somebody is there: without calls for SafetyLimits::kSilence
   // the force of guarded motors fades.
@@ -161,7 +164,9 @@ class LiveLoop {
     worlds_.collect();
     slots_.collect();
     paths_.collect();
-    return snapshots_.update();
+    const bool news = snapshots_.update();
+    note_trip();
+    return news;
   }
   const Snapshot& snapshot() const { return snapshots_.front(); }
   // Takes the ticks since the last call, as far as `into` has room; returns their number. Each tick
@@ -217,6 +222,7 @@ class LiveLoop {
   HandInput follow_path();                             // the loop's
   void begin(RigStart start, const Parameters& p);
   bool recorder_is_free();
+  void note_trip();  // the window's
 
   Dispose dispose_;
   TripleBuffer<Controls> controls_;
@@ -235,6 +241,8 @@ class LiveLoop {
   bool plugged_ = false;   // the window's
   std::string device_source_;
   bool virtual_armed_ = true;
+  bool tripped_ = false;  // as far as the window knows
+  std::optional<nanoseconds> tripped_at_;
   std::shared_ptr<WarmthMemory> warmth_ = std::make_shared<WarmthMemory>();  // of devices in place
 
   // Counted by the window, read by the loop.

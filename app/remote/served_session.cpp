@@ -128,9 +128,11 @@ void ServedSession::watch_buttons() {
   if (!loop().device_in_place()) return;
   // A button held while the device comes back asks for nothing.
   if (!loop().snapshot().connected) return buttons_.forget();
-  const std::uint32_t pressed = buttons_.take(loop().snapshot().reading.buttons);
-  if ((pressed & 2) == 0) return;
-  loop().snapshot().armed() ? loop().cut() : loop().arm();
+  const std::uint32_t pressed = buttons_.take(loop().snapshot().reading);
+  if ((pressed & 2) == 0 || loop().toggle_force()) return;
+  fmt::print(stderr,
+             "limpid: note: the force switched itself off a moment ago; press the button again to "
+             "arm it\n");
 }
 
 json ServedSession::state() const {

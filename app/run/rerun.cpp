@@ -4,7 +4,7 @@
 #include <array>
 
 #include "app/run/lane_settings.h"
-#include "app/run/motor_limits.h"
+#include "app/run/run_watch.h"
 #include "devices/files/config_file.h"
 
 namespace limpid {
@@ -17,22 +17,23 @@ RerunRows run_once_more(const Session& session, const std::string& where, const 
   again.arm = plan.arm;
   again.settings.push_back({0, plan.parameters});
   again.rows.reserve(session.rows.size());
-  std::uint64_t count = 0, limited = 0;
-  std::vector<MotorLimit> limits = motor_limits(plan.arm, plan.parameters);
+  std::uint64_t count = 0;
+  RunWatch watch(plan.arm, session.layout, plan.parameters);
   ForgetBehind forget;
   again.end = simulate(plan, {.realtime = false, .stop = &stop},
                        [&](std::span<const double> row, LaneChanges changed) {
-                         if (changed[kMainLane] != nullptr) {
-                           limits = motor_limits(plan.arm, *changed[kMainLane]);
-                           again.settings.push_back({count, *changed[kMainLane]});
+                         if (const Parameters* now = changed[kMainLane]) {
+                           watch.change(count, *now);
+                           again.settings.push_back({count, *now});
                          }
-                         limited += any_at_limit(session.layout, row, limits) ? 1 : 0;
+                         watch.add(row);
                          again.rows.insert(again.rows.end(), row.begin(), row.end());
                          forget.passed(row.size_bytes());
                          at(static_cast<double>(++count) / static_cast<double>(plan.rows));
                          return true;
                        });
-  again.at_limit = static_cast<double>(limited) * session.info.tick;
+  again.at_limit = watch.at_limit();
+  again.cautions = watch.cautions();
   if (again.end.stopped || again.rows.empty()) {
     again.rows.clear();
     return again;

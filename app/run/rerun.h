@@ -24,6 +24,7 @@ struct RerunRows {
   RunEnd end;                          // after a divergence the last row is repeated
   std::vector<SettingsFrom> settings;  // from the first row on
   double at_limit = 0;                 // time in which a motor was at its limit [s]
+  std::vector<std::string> cautions;   // RunWatch::cautions()
   std::string name;                    // "re-run: predictive", by what was changed
   std::string recorded;                // "recorded: standard", the first run's name beside it
   std::string note;                    // why it may differ from the recording; for people

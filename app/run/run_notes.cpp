@@ -2,11 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "app/run/analysis.h"
 
 namespace limpid {
 
-std::vector<std::string> notes_on(const Parameters& p) {
+std::string weak_spring_text(const ArmDescription& arm, const Parameters& p) {
+  if (std::ranges::find(info(p.kind).sliders, std::string_view("coupling.k_vc")) ==
+      info(p.kind).sliders.end()) {
+    return {};
+  }
+  // Rate at which the spring brings device and proxy together [1/s]; slower than a hand moves.
+  constexpr double kSlow = 2 * std::numbers::pi;
+  const Eigen::MatrixXd M = arm_at(arm, rest_pose(arm)).M;
+  int weakest = 0;
+  for (int i = 1; i < arm.dof(); ++i) weakest = M(i, i) > M(weakest, weakest) ? i : weakest;
+  const double rate = std::sqrt(p.k_vc / M(weakest, weakest));
+  if (rate >= kSlow) return {};
+  return fmt::format(
+      "coupling.k_vc is weak for joint {}: it brings device and proxy together at {:.2g} Hz there, "
+      "so that they may drift apart in contact. Gains that are fitted follow the joint with the "
+      "least damping",
+      arm.joints[static_cast<std::size_t>(weakest)].name, rate / (2 * std::numbers::pi));
+}
+
+std::vector<std::string> notes_on(const ArmDescription& arm, const Parameters& p) {
   std::vector<std::string> notes;
   const LawInfo& law = info(p.kind);
   if (p.linked() && !law.knows_link()) {
@@ -18,6 +41,7 @@ std::vector<std::string> notes_on(const Parameters& p) {
         "ms; at longer ticks the hand may be given more energy than ledger.energy",
         1e3 * p.tick, law.key));
   }
+  if (std::string weak = weak_spring_text(arm, p); !weak.empty()) notes.push_back(std::move(weak));
   return notes;
 }
 

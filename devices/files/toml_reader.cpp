@@ -129,6 +129,17 @@ void TomlTable::refuse_slips(const std::vector<const char*>& known) const {
   }
 }
 
+void TomlTable::refuse_strays(const std::vector<const char*>& known,
+                              const std::function<bool(std::string_view, const toml::node&)>& stray,
+                              const std::string& allowed) const {
+  for (const auto& [key, node] : table_) {
+    const std::string word(key.str());
+    if (std::ranges::find(known, word) == known.end() && stray(word, node)) {
+      refuse(word.c_str(), allowed);
+    }
+  }
+}
+
 std::optional<std::string> TomlTable::text(const char* key) const {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,10 @@ class TomlTable {
   void allow_only(const std::vector<const char*>& keys) const;
   // Refuses keys that are nearly one of `known`, likely slips; other unknown keys stay.
   void refuse_slips(const std::vector<const char*>& known) const;
+  // Refuses keys other than `known` for which `stray` is true.
+  void refuse_strays(const std::vector<const char*>& known,
+                     const std::function<bool(std::string_view, const toml::node&)>& stray,
+                     const std::string& allowed) const;
   std::optional<std::string> text(const char* key) const;
   std::optional<double> number(const char* key, const Range& range) const;
   std::optional<std::uint64_t> count(const char* key, std::uint64_t least,

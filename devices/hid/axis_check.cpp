@@ -129,6 +129,7 @@ std::span<const double> AxisCheck::step(const Tick& in) noexcept {
     if (!started_) start_ = x_;
     started_ = true;
     time_ += in.T;
+    if (in.gap) rest_again();
     if (phase_ > 0 && furthest(home_, allowed_) > 1) {
       end(AxisVerdict::too_far);
     } else if (is_push(phase_)) {
@@ -138,6 +139,14 @@ std::span<const double> AxisCheck::step(const Tick& in) noexcept {
     }
   }
   return {torque_.data(), joints};
+}
+
+// Goes back to the rest before this push.
+void AxisCheck::rest_again() noexcept {
+  if (is_push(phase_)) --phase_;
+  torque_.fill(0);
+  time_ = still_ = 0;
+  start_ = x_;
 }
 
 void AxisCheck::rest(double T) noexcept {

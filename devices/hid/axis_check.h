@@ -55,6 +55,7 @@ class AxisCheck {
     std::span<const double> x;  // positions of the joints [rad]
     double T = 0;               // time since the last tick [s]
     bool well = false;          // as described above
+    bool gap = false;           // after a stall: a push begins again, from nothing
   };
 
   // Throws std::invalid_argument if the device has no motors.
@@ -78,6 +79,7 @@ class AxisCheck {
  private:
   using Joints = std::array<double, kMaxDof>;
   void rest(double T) noexcept;
+  void rest_again() noexcept;
   void push() noexcept;
   void judge() noexcept;
   void next() noexcept;

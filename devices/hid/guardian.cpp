@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -94,6 +95,15 @@ void stop_device(int device, const std::vector<Report>& reports) {
   }
 }
 
+// 0 would leave dumps that are piped into a program, as most systems do; the kernel takes 1 for
+// none at all.
+void leave_no_core_dump() {
+  rlimit core{};
+  if (getrlimit(RLIMIT_CORE, &core) != 0) return;
+  core.rlim_cur = std::min<rlim_t>(1, core.rlim_max);
+  setrlimit(RLIMIT_CORE, &core);
+}
+
 }  // namespace
 
 Guardian::Guardian(const std::string& path, const std::vector<Report>& stop_reports, int claim)
@@ -118,6 +128,7 @@ Guardian::Guardian(int device, const std::vector<Report>& stop_reports, int clai
   const int error = errno;
   close(device);
   if (child_ > 0) {
+    leave_no_core_dump();
     // Waits: until the child is independent, whatever kills our group or hangs up our terminal
     // kills it, too.
     while (!watch_->independent && waitpid(child_, nullptr, WNOHANG) == 0) poll(nullptr, 0, 1);

@@ -3,8 +3,9 @@
 // A guardian is a child process that only waits for the end of the thread that made it. However
 // that thread ends, the kernel releases the lock it holds. The guardian then writes the stop
 // reports to the device, and ends. It learns of the end before the kernel frees our memory, which
-// can take tens of milliseconds. It cannot help if it is killed with us, if we hang, or while the
-// kernel writes a core dump: the devices' own watchdogs have to.
+// can take tens of milliseconds. It cannot help if it is killed with us, or if we hang or are
+// stopped (SIGSTOP, Ctrl-Z): the devices' own watchdogs have to. A core dump would hold the lock
+// for as long as the kernel writes it. Therefore a process leaves none once it has had a guardian.
 #pragma once
 
 #include <sys/types.h>

@@ -190,17 +190,28 @@ Decoded InverseProtocol::decode(std::span<const std::uint8_t> report,
   if (const json& status = at(device, "status"); status.is_object()) fault_ = ill(status);
   reading.fault = fault_ || other_frame_.any();
   for (std::size_t i = 0; i < cursor_.size(); ++i) reading.x[i] = cursor_[i] / kSlideUnit;
-  reading.buttons = 0;
-  const json& grips = at(message, "wireless_verse_grip");
-  if (grips.is_array() && !grips.empty()) {
-    const json& buttons = at(at(grips.front(), "state"), "buttons");
+  take_buttons(at(message, "wireless_verse_grip"), reading);
+  return Decoded::reading;
+}
+
+// Takes the buttons of the grip that was alone when the first one was seen. Of several grips nobody
+// knows which one is in the hand that holds the device.
+template <class Json>
+void InverseProtocol::take_buttons(const Json& grips, DeviceReading& reading) {
+  reading.buttons = reading.buttons_known = 0;
+  if (!grips.is_array()) return;
+  if (grip_.empty() && grips.size() == 1) grip_ = text_of(at(grips.front(), "device_id"));
+  for (const Json& grip : grips) {
+    if (grip_.empty() || text_of(at(grip, "device_id")) != grip_) continue;
+    const Json& buttons = at(at(grip, "state"), "buttons");
     for (std::uint32_t i = 0; const char* name : {"a", "b", "c"}) {
-      const json& pressed = at(buttons, name);
-      if (pressed.is_boolean() && pressed.get<bool>()) reading.buttons |= 1u << i;
-      ++i;
+      const Json& pressed = at(buttons, name);
+      const std::uint32_t bit = 1u << i++;
+      if (!pressed.is_boolean()) continue;
+      reading.buttons_known |= bit;
+      if (pressed.template get<bool>()) reading.buttons |= bit;
     }
   }
-  return Decoded::reading;
 }
 
 Report InverseProtocol::command(const Cursor& force) const {

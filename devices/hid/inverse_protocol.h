@@ -60,8 +60,10 @@ class InverseProtocol final : public HidProtocol {
   bool follows(const std::array<double, 3>& cursor);
   template <class Json>
   void follow_frame(const Json& config, const Json& workspace);
+  template <class Json>
+  void take_buttons(const Json& grips, DeviceReading& reading);
 
-  std::string id_;
+  std::string id_, grip_;
   DeviceTraits traits_;
   std::vector<Report> stop_reports_;
   nanoseconds now_{}, asked_{}, seen_{};

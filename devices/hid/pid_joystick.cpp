@@ -145,7 +145,7 @@ Decoded PidJoystick::decode(std::span<const std::uint8_t> report, DeviceReading&
   const auto positions = decode_positions(report, read);
   if (!positions) return Decoded::unusable;
   const bool any = std::ranges::count(*positions, true) > 0;
-  const bool buttons = decode_buttons(report, buttons_, read.buttons);
+  const bool buttons = decode_buttons(report, buttons_, read.buttons, read.buttons_known);
   const bool state = decode_state(report, read);
   if (!any && !buttons && !state) return Decoded::unusable;
   reading = read;

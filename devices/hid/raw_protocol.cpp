@@ -232,6 +232,7 @@ Decoded RawProtocol::decode(std::span<const std::uint8_t> report, DeviceReading&
 Decoded RawProtocol::take_more(Payload body, const Positions& x, std::uint32_t sequence,
                                DeviceReading& reading) noexcept {
   reading.buttons = load_le<std::uint32_t>(body, Raw2Reading::buttons);
+  reading.buttons_known = ~0u;
   const std::uint8_t reason = body[Raw2Reading::no_force];
   reading.no_force = reason < kNoForces ? static_cast<NoForce>(reason) : NoForce::other;
   if (reading.no_force != NoForce::none && !(body[RawAt::flags] & RawFlag::cut)) ++reading.lapses;

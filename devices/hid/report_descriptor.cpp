@@ -369,14 +369,15 @@ std::vector<ReportField> button_fields(const ReportDescriptor& descriptor) {
 }
 
 bool decode_buttons(std::span<const std::uint8_t> report, std::span<const ReportField> fields,
-                    std::uint32_t& buttons) noexcept {
+                    std::uint32_t& pressed, std::uint32_t& known) noexcept {
   bool any = false;
   for (const ReportField& field : fields) {
     if (report.empty() || report[0] != field.report_id) continue;
-    const auto pressed = get_field(report, field);
-    if (!pressed) continue;
+    const auto down = get_field(report, field);
+    if (!down) continue;
     const std::uint32_t bit = 1u << (field.usages[0] - kFirst);
-    buttons = *pressed ? buttons | bit : buttons & ~bit;
+    pressed = *down ? pressed | bit : pressed & ~bit;
+    known |= bit;
     any = true;
   }
   return any;

@@ -100,8 +100,8 @@ bool put_field(std::span<std::uint8_t> report, const ReportField& field, std::in
 // The fields of buttons 1 to 32 in the input reports, of one bit each.
 std::vector<ReportField> button_fields(const ReportDescriptor& descriptor);
 
-// Takes the buttons of a report into `buttons`, one bit each; true if there are any.
+// Takes the buttons of a report into `pressed` and `known`, one bit each; true if there are any.
 bool decode_buttons(std::span<const std::uint8_t> report, std::span<const ReportField> fields,
-                    std::uint32_t& buttons) noexcept;
+                    std::uint32_t& pressed, std::uint32_t& known) noexcept;
 
 }  // namespace limpid

@@ -63,7 +63,7 @@ void SpaceMouse::open(HidTransport&) {}
 
 Decoded SpaceMouse::decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept {
   const bool axes = decode_axes(report, reading);
-  const bool buttons = decode_buttons(report, buttons_, reading.buttons);
+  const bool buttons = decode_buttons(report, buttons_, reading.buttons, reading.buttons_known);
   return axes ? Decoded::reading : buttons ? Decoded::status : Decoded::unusable;
 }
 

@@ -17,7 +17,7 @@ namespace limpid::test {
 struct Wire {
   std::atomic<double> angle{0};  // from the arm's rest [rad]
   std::atomic<bool> here{true};
-  std::atomic<std::uint32_t> buttons{0};
+  std::atomic<std::uint32_t> buttons{0}, buttons_known{~0u};
   std::atomic<double> torque{0};  // largest of the newest command [N m]
   std::atomic<int> closed{0};
 };
@@ -37,6 +37,7 @@ class WiredDevice final : public Device {
     newest.count = ++count_;
     if (newest.count % 2 == 0) newest.x[0] += 1e-12;  // a hand is never quite still
     newest.buttons = wire_->buttons;
+    newest.buttons_known = wire_->buttons_known;
     return wire_->here;
   }
   void write(std::span<const double> torque) noexcept override {

@@ -61,6 +61,9 @@ class Installed(SystemTest):
                 continue  # no libmujoco-dev
             with self.subTest(name):
                 self.assertNotEqual(must(out / name, cwd=out), "")
+        readings = out / "readings.csv"
+        readings.write_text("0,-0.6,1.5\n" * 50)
+        self.assertIn("predictive", must(out / "compare_laws", readings, cwd=out))
 
     def test_a_program_is_built_by_pkg_config(self) -> None:
         (config,) = self.prefix.rglob("limpid.pc")

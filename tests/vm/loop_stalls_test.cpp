@@ -80,8 +80,15 @@ TYPED_TEST(StalledLoop, FadesInAgainAfterTheWholeProgramStoodStill) {
     wait(900ms);
     const double full = this->full();
     ASSERT_GT(full, 0.1);
+    const Time stopped = steady_now();
     kill(driver, SIGSTOP);
     wait(stall);
+    if (stall >= 100ms) {
+      const auto zero = this->desk.zero_after(stopped);
+      print_time(this->name() + ": program stopped", zero, 22ms);
+      ASSERT_TRUE(zero);
+      EXPECT_LE(*zero, 22ms) << "the device's own watchdog";
+    }
     const Time resumed = steady_now();
     kill(driver, SIGCONT);
     wait(50ms);

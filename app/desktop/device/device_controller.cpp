@@ -137,7 +137,7 @@ void DeviceController::watch() {
     live_.loop().plug(nullptr);
     return;
   }
-  const std::uint32_t pressed = buttons_.take(snapshot.reading.buttons);
+  const std::uint32_t pressed = buttons_.take(snapshot.reading);
   if ((pressed & 1) != 0) requests_.first_button();
   if ((pressed & 2) != 0) requests_.second_button();
 }
@@ -246,8 +246,10 @@ void DeviceController::take_turn(const std::string& id) {
   choose();
 }
 
+// A connection under way is not taken: it knows the device as it was.
 void DeviceController::connect_anew() {
   save();
+  connecting_id_.clear();
   if (live_.loop().device_plugged()) lend();
   take_back();
 }

@@ -53,7 +53,6 @@ class LiveStage {
   std::string why_lanes_are_fixed() const;
 
   bool force_armed() const { return loop().snapshot().armed(); }
-  void toggle_force() { force_armed() ? loop().cut() : loop().arm(); }
   // Controls the virtual arm's time. Returns why it cannot be changed, for people; empty if it can.
   std::string why_time_is_fixed() const;
   bool paused() const { return controls().paused && why_time_is_fixed().empty(); }

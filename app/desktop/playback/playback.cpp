@@ -139,6 +139,7 @@ bool Playback::take_results() {
   if (auto again = rerunning_.take(); again && shown_ && !again->run.rows.empty()) {
     const RunEnd end = again->run.end;
     const double at_limit = again->run.at_limit;
+    const std::vector<std::string> cautions = again->run.cautions;
     const std::string& note = again->run.note;
     if (!note.empty() && !std::exchange(told_of_build_, true)) notices_.say(note);
     shown_->show(std::move(*again));
@@ -147,7 +148,10 @@ bool Playback::take_results() {
           fmt::format("The re-run is unstable from t = {:.3f} s on: {}. The whole re-run is shown.",
                       end.diverged_at, end.why),
           true);
-    } else if (constexpr double kTold = 0.02; at_limit >= kTold) {  // [s]
+    } else {
+      for (const std::string& caution : cautions) notices_.say("Re-run: " + caution + ".", true);
+    }
+    if (constexpr double kTold = 0.02; !end.diverged && at_limit >= kTold) {  // [s]
       notices_.say(
           fmt::format("In the re-run motors are at their limit for {:.3g} s. In this time device "
                       "and proxy may drift apart under every law.",

@@ -373,7 +373,8 @@ void Desktop::toggle_force() {
         "to live (Backspace), then arm the force.",
         true);
   }
-  live.toggle_force();
+  if (live.loop().toggle_force()) return;
+  notices.say("The force switched itself off a moment ago. Press F again to arm the force.", true);
 }
 
 void Desktop::cut_force() {

@@ -156,6 +156,7 @@ void Application::run(const std::string& complaint) {
 // Asks about a running recording and unsaved changes, unless an interrupt came from outside.
 bool Application::asked_to_close() {
   if (interrupted) {
+    desktop_.cut_force();  // before any file is written
     keep_scene();
     return true;
   }
@@ -175,9 +176,11 @@ void Application::keep_scene() {
   keep_changes(document.editor().document(), desktop_.live.stage().arm(), document.file());
 }
 
-// Stops the motors first, then completes the recording.
+// Stops the motors first, also of a device that a check or an identification moves, then completes
+// the recording.
 void Application::finish() {
   try {
+    desktop_.cut_force();
     desktop_.live.loop().close();
     desktop_.live.complete_recording();
   } catch (const std::exception& e) {

@@ -282,7 +282,8 @@ class LIMPID_API DeviceLoop : public Loop {
     bool fault = false;  // True: the device is not well; force trips until it is armed again.
     // Time since the last tick [s]. 0: measured by the library with real motors, one period with
     // simulated ones. More than 5 ms is a stall, after which force fades in anew. A loop that gives
-    // its own time has to measure it, or its stalls are not seen. Not finite or below 0: a fault.
+    // its own time has to measure it, or its stalls are not seen. Not finite or below 0: a fault,
+    // and so are ticks that come more than a tenth faster than `period` says.
     double elapsed = 0;
   };
 

@@ -631,6 +631,14 @@ TEST_F(Commands, CheckOfAnArmListsJointsInTheirUnits) {
               HasSubstr("warning      condition (3) is not met with these settings"));
 }
 
+TEST_F(Commands, CheckOfAnArmKnowsNoLimitWherePacketsAreLost) {
+  write("arm.urdf", arm_text("lower=\"0\" upper=\"0.04\"", "0.3", kPlate));
+  const std::string said =
+      run({"check", "arm.urdf", "--coupling", "standard", "--set", "link.loss=0.1"}).out;
+  EXPECT_THAT(said, HasSubstr("condition (3): no limit is known where packets are lost"));
+  EXPECT_THAT(said, Not(HasSubstr("condition (3) is not met"))) << "nobody knows";
+}
+
 TEST_F(Commands, CheckOfAnArmDoubtsWhatNoBodyHas) {
   const auto check = [&](const std::string& limits, const std::string& mass, const char* moments) {
     write("arm.urdf", arm_text(limits, mass, moments));

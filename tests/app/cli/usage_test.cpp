@@ -145,6 +145,11 @@ TEST_F(Usage, RefusesValuesThatAreNone) {
   EXPECT_THAT(refused({"run", "--set", "coupling.ets=1"}), HasSubstr("coupling.eta"));
 }
 
+TEST_F(Usage, OfACommandBelowAnotherIsThatOfAllCommands) {
+  EXPECT_EQ(done({"devices", "look", "--version"}), done({"--version"}));
+  EXPECT_THAT(refused({"devices", "look", "--record", ""}), HasSubstr("allowed: a"));
+}
+
 // Words offered behind `words`; what stands behind a tab is their meaning.
 std::vector<std::string> offered(const std::string& out) {
   std::vector<std::string> words;

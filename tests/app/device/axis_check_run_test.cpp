@@ -114,6 +114,35 @@ TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
   EXPECT_TRUE(device.stopped);
 }
 
+// A device whose own watchdog cut once, in the first push.
+TEST(AxisCheckRun, BeginsAPushAgainAfterALapse) {
+  class Lapsing final : public Device {
+   public:
+    const DeviceTraits& traits() const override { return device_.traits(); }
+    bool read(DeviceReading& newest) noexcept override {
+      if (lapses == 0 && device_.told[0] > 0.005) lapses = 1;
+      newest.lapses = lapses;
+      return device_.read(newest);
+    }
+    void write(std::span<const double> torque) noexcept override {
+      if (lapses == 1 && after < 0) after = torque[0];
+      device_.write(torque);
+    }
+    void stop() noexcept override { device_.stop(); }
+    std::uint32_t lapses = 0;
+    double after = -1;  // torque of the tick that sees the lapse [N m]
+
+   private:
+    Yielding device_{{0.5, 0.5}};
+  } device;
+  AxisCheckProgress progress;
+  progress.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
+  const AxisCheck check = run_axis_check(device, stick(), {}, progress, {});
+  EXPECT_EQ(device.lapses, 1u);
+  EXPECT_EQ(device.after, 0);
+  EXPECT_TRUE(check.passed()) << report_of(check, progress.end);
+}
+
 // The device notes when it was told which torque. Warmth by its definition: the torque's square
 // over the continuous one's, over the time constant, while it is still far from its end.
 TEST(AxisCheckRun, TellsByHowMuchTheMotorsWereWarmedUp) {

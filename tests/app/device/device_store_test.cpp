@@ -110,6 +110,12 @@ TEST(DeviceStore, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
                 {"limits = {force = 1}", "limits.force", "no such key", "tip_force, energy"},
                 {"limits = {speed = 0.5}", "limits.speed", "no such key", "joint_speed, tip_speed"},
                 {"limit = {tip_force = 1}", "limit", "a table", "the key \"limits\""},
+                {"tip_force = 1.0", "tip_force", "1", "limits under [device."},
+                {"safety = {tip_force = 1.0}", "safety", "a table", "limits under [device."},
+                {"force_limits = {x = 1}", "force_limits", "a table", "limits under [device."},
+                {"\"limits.tip_force\" = 1.0", "limits.tip_force", "1", "limits under [device."},
+                {"compensation = {tip_force = 1}", "compensation.tip_force", "1", "limits under"},
+                {"axis = [{range = 1}]", "axis[0].range", "1", "limits under [device."},
                 {"reversed = [true]", "reversed", "[true]", "the key \"reverse\""},
                 {"axis = [{invertd = true}]", "axis[0].invertd", "true", "the key \"inverted\""}};
   for (const auto& [line, key, found, allowed] : kWrong) {
@@ -132,7 +138,8 @@ TEST(DeviceStore, RefusesEverythingWhereTheFileItselfCannotBeUnderstood) {
   const auto file = dir / "devices.toml";
   for (const char* text :
        {"in_use = \n", "in_use = 7\n", "device = 3\n", "[device.a]\nchecked = true\n[device.a]\n",
-        "[device.a]\n[devices.a.limits]\ntip_force = 1\n", "\xff\xfe"}) {
+        "[device.a]\n[devices.a.limits]\ntip_force = 1\n", "[limits]\ntip_force = 1\n",
+        "tip_force = 1\n", "[safety]\nforce = 1\n", "\xff\xfe"}) {
     std::ofstream(file) << text;
     const DeviceStore store = load_device_store(file);
     EXPECT_THAT(store.refusal, testing::StartsWith(file.string() + ":")) << text;

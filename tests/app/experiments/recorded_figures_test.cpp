@@ -320,6 +320,8 @@ TEST(FiguresOf, SaturationHaveAPointForEachCorner) {
       EXPECT_GE(torques.points[k].x, 0.1);
       EXPECT_LE(torques.points[k].x, 0.6);
       EXPECT_EQ(torques.points[k].x, jumps.points[k].x);
+      EXPECT_GT(torques.points[k].y, 0) << "it is pressed into corner " << k;
+      EXPECT_GT(jumps.points[k].y, 0) << "it moves on its way into corner " << k;
       most_torque = std::max(most_torque, torques.points[k].y);
       most_jump = std::max(most_jump, jumps.points[k].y);
     }

@@ -273,19 +273,49 @@ TEST(DeviceLoop, SaysThatAReadingOfASimulationIsNotFinite) {
   EXPECT_EQ(loop.force_text(), "force off: a reading is not finite");
 }
 
-TEST(DeviceLoop, SaysThatTicksComeAtAnotherPaceThanThePeriod) {
-  LoopOptions options = slide();
-  options.motors = Motors::real;
-  options.period = 4e-3;
-  DeviceLoop loop(options, std::array{0.0});
-  loop.arm();
+// Runs a loop of a period of 1 ms whose ticks come after `elapsed` [s]; 0: as fast as it goes.
+// Returns the largest share of the force that its motors had, and the text at the end.
+std::pair<double, std::string> paced(DeviceLoop& loop, double elapsed, double seconds) {
   DeviceLoop::Reading reading;
-  for (int k = 0; k < 1000 || loop.force_share() < 1; ++k) {  // as fast as it goes
+  reading.elapsed = elapsed;
+  double most = 0;
+  for (int k = 0; k < std::lround(1e3 * seconds); ++k) {
     const std::array<double, 1> x{k % 2 * 1e-6};
     reading.position = x;
     loop.tick(reading);
+    most = std::max(most, loop.force_share());
   }
-  EXPECT_THAT(loop.force_text(), HasSubstr("not every 4 ms as `period` says"));
+  return {most, loop.force_text()};
+}
+
+TEST(DeviceLoop, SaysThatTicksComeAtAnotherPaceThanThePeriod) {
+  LoopOptions options = slide();
+  options.motors = Motors::real;
+  DeviceLoop loop(options, std::array{0.0});
+  loop.arm();
+  EXPECT_THAT(paced(loop, 1.4e-3, 2).second, HasSubstr("every 1.4 ms, not every 1 ms"));
+}
+
+// Speeds would be judged too small, and energy forgotten too fast.
+TEST(DeviceLoop, TripsWhereTicksComeFasterThanThePeriod) {
+  LoopOptions options = slide();
+  options.motors = Motors::real;
+  for (const double elapsed : {0.0, 1e-4, 5e-4, 8e-4}) {
+    DeviceLoop loop(options, std::array{0.0});
+    loop.arm();
+    const auto [most, why] = paced(loop, elapsed, 1.5);
+    EXPECT_LT(most, 1) << elapsed << " s";
+    EXPECT_EQ(loop.force_share(), 0);
+    EXPECT_THAT(why, AllOf(StartsWith("force off: ticks come"), HasSubstr("not every 1 ms")));
+    EXPECT_EQ(paced(loop, 1e-3, 2).first, 0) << "until it is armed again";
+    loop.arm();
+    EXPECT_EQ(paced(loop, 1e-3, 1).first, 1);
+    EXPECT_EQ(loop.force_text(), "");
+  }
+  DeviceLoop slightly(options, std::array{0.0});
+  slightly.arm();
+  EXPECT_EQ(paced(slightly, 0.95e-3, 5).first, 1);
+  EXPECT_EQ(slightly.force_text(), "");
 }
 
 TEST(DeviceLoop, CountsMotorsThatAreNotSimulatedAsReal) {

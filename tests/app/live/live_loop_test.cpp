@@ -23,6 +23,7 @@
 #include "tests/support/random_arm.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/test_session.h"
+#include "tests/support/wired_device.h"
 
 namespace limpid {
 namespace {
@@ -545,6 +546,49 @@ TEST(LiveLoop, StopsADeviceThatIsReplaced) {
     loop.update();
   }
   EXPECT_TRUE(stopped[0]);
+}
+
+// Who presses just after a trip wanted to switch the force off.
+TEST(LiveLoop, TakesAPressAfterATripForNone) {
+  const auto wire = std::make_shared<test::Wire>();
+  LiveLoop loop({});
+  loop.open(test::omni(), Scene{}, Parameters{}, std::make_unique<test::WiredDevice>(3, wire));
+  const auto frame = [&] {
+    loop.set({});
+    let_live(loop, 2);
+    loop.update();
+    return loop.snapshot().arming;
+  };
+  const auto until = [&](Arming wanted) {
+    for (int i = 0; i < 1000 && frame() != wanted; ++i) {
+    }
+    return loop.snapshot().arming == wanted;
+  };
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(frame(), Arming::off);
+  EXPECT_TRUE(loop.toggle_force());
+  ASSERT_TRUE(until(Arming::on));
+  wire->here = false;
+  ASSERT_TRUE(until(Arming::tripped));
+  wire->here = true;
+  const auto tripped = std::chrono::steady_clock::now();
+  EXPECT_FALSE(loop.toggle_force());
+  while (std::chrono::steady_clock::now() - tripped < 1100ms) {
+    EXPECT_EQ(frame(), Arming::tripped);
+  }
+  EXPECT_TRUE(loop.toggle_force());
+  EXPECT_TRUE(until(Arming::on));
+}
+
+// What closes a device may wait behind others.
+TEST(LiveLoop, StopsItsDeviceBeforeItHandsItOver) {
+  std::vector<bool> stopped;
+  LiveLoop loop({}, [&](std::unique_ptr<Device> device) {
+    stopped.push_back(static_cast<test::FakeDevice&>(*device).stopped);
+  });
+  loop.open(test::omni(), Scene{}, Parameters{}, std::make_unique<test::FakeDevice>(3));
+  let_live(loop, 10);
+  loop.close();
+  EXPECT_EQ(stopped, std::vector{true});
 }
 
 // A device that answers from the middle of its ranges, except 0.9 rad at the first joint.

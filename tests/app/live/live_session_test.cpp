@@ -121,6 +121,23 @@ TEST_F(ALiveSession, RecordsLanesWholeThatComeAndGoMeanwhile) {
   }
 }
 
+// A turn that waited for the disk would hold up the window, and the loop takes the force from a
+// window that is silent.
+TEST_F(ALiveSession, GoesOnWhileTheFileOfARecordingIsCompleted) {
+  bool went_on = false;
+  for (int again = 0; again < 5; ++again) {
+    record(dir_ / ("a" + std::to_string(again) + ".h5").c_str());
+    ASSERT_TRUE(turn_until([this] { return news_.began; }));
+    ASSERT_TRUE(some_ticks());
+    session_->stop_recording();
+    ASSERT_TRUE(turn_until([&] {
+      went_on = went_on || (news_.ended && !news_.complete);
+      return news_.complete;
+    }));
+  }
+  EXPECT_TRUE(went_on) << "each turn in which one ended waited for its file";
+}
+
 TEST_F(ALiveSession, RefusesSeveralLanesOfADevice) {
   session_->open(plan_.arm, plan_.document.scene, plan_.parameters,
                  std::make_unique<test::FakeDevice>(3));

@@ -142,6 +142,35 @@ TEST_F(APlot, WritesTheValuesOfTheMomentThatIsPointedAt) {
   });
 }
 
+TEST_F(APlot, WritesValuesAtTheBottomInsideThePlotAndApart) {
+  PlotSpec spec = energy();
+  spec.end_labels = true;
+  spec.curves = {{.channel = 0, .label = "nothing"}, {.channel = 1, .label = "little"}};
+  History history({.channels = 2});
+  history.append(0, std::array{0.0, 0.05});
+  const ScreenRect area{{60, 0}, {200, 400}};
+  float line = 0;
+  frame([&] {
+    line = text_size(Face::small, "0").y;
+    const PlotFrame in{*ImGui::GetForegroundDrawList(),
+                       current_palette(),
+                       1,
+                       {{0, 0}, {300, 420}},
+                       area,
+                       {1.0 / 140, 0, 140},
+                       {{0, 1}},
+                       {{0, 6}}};
+    draw_end_labels(in, spec, history, 0);
+  });
+  const std::vector<test::DrawnText> texts = test::drawn_texts();
+  ASSERT_EQ(texts.size(), 2u);
+  for (const test::DrawnText& text : texts) {
+    EXPECT_LE(text.max.y, area.max.y + 1) << text.text;
+    EXPECT_GT(text.min.y, area.max.y - 3 * line) << text.text;
+  }
+  EXPECT_GE(std::abs(texts[0].middle().y - texts[1].middle().y), line - 1);
+}
+
 // Whatever the value, its digits stand inside the plot.
 TEST_F(APlot, WritesValuesAtTheEndsThatFitIntoTheMargin) {
   PlotSpec spec = energy();

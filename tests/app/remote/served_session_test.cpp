@@ -248,5 +248,16 @@ TEST_F(Served, LeavesTheForceOfARealDeviceToItsSecondButton) {
   EXPECT_THAT(refused({{"do", "twin"}}), HasSubstr("one hand cannot hold two real devices"));
 }
 
+TEST_F(Served, TakesAButtonForNothingThatIsHeldBeforeTheFirstReport) {
+  const auto wire = std::make_shared<test::Wire>();
+  wire->buttons_known = 0;
+  serve(world(), std::make_unique<test::WiredDevice>(3, wire));
+  for (int i = 0; i < 30; ++i) turn();
+  wire->buttons = 2;
+  wire->buttons_known = ~0u;
+  for (int i = 0; i < 100; ++i) turn();
+  EXPECT_FALSE(state()["force"].get<bool>());
+}
+
 }  // namespace
 }  // namespace limpid

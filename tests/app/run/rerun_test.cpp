@@ -54,6 +54,19 @@ TEST_F(ARerun, HasTheRowsOfTheRecordingUntilSomethingIsChanged) {
   EXPECT_TRUE(run_once_more(session_, "a.h5", chosen, stopped, at).rows.empty());
 }
 
+// Below eta_min the proposed law gives energy, and does not yet become unstable in this hand.
+TEST_F(ARerun, SaysThatItIsNotPassive) {
+  const std::atomic<bool> stop = false;
+  Parameters chosen = before_;
+  set_parameter(chosen, "coupling.kind", std::string("proposed"));
+  chosen.eta = 0.3;
+  const RerunRows given = run_once_more(session_, "a.h5", chosen, stop, [](double) {});
+  ASSERT_FALSE(given.end.diverged);
+  EXPECT_THAT(given.cautions, testing::ElementsAre(testing::HasSubstr("not passive")));
+  EXPECT_THAT(run_once_more(session_, "a.h5", before_, stop, [](double) {}).cautions,
+              testing::IsEmpty());
+}
+
 // A motor is at its limit whenever it gives all of its torque.
 TEST_F(ARerun, SaysForHowLongMotorsAreAtTheirLimit) {
   const std::atomic<bool> stop = false;

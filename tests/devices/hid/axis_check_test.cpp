@@ -109,6 +109,28 @@ TEST(AxisCheck, FadesIn) {
   EXPECT_LE(steepest, 0.2 * 1e-3 / 0.5 + 1e-12) << "half a second to a tenth of 2 N m";
 }
 
+// A loop that stood still has no idea what the device did meanwhile.
+TEST(AxisCheck, BeginsAPushAgainFromNothingAfterAStall) {
+  AxisCheck check(traits(1));
+  Springs springs{{0.2}};
+  double asked = 0;
+  while (asked < 0.08) {
+    asked = check.step({springs.x, 1e-3, true})[0];
+    ASSERT_FALSE(check.done());
+  }
+  EXPECT_EQ(check.stage(), AxisStage::pushing);
+  EXPECT_EQ(check.step({springs.x, 0.1, true, true})[0], 0);
+  EXPECT_EQ(check.stage(), AxisStage::resting);
+  double before = 0, steepest = 0;
+  while (!check.done() && springs.time < 100) {
+    springs.tick(check);
+    if (springs.x[0] > before) steepest = std::max(steepest, (springs.x[0] - before) / 0.2);
+    before = springs.x[0];
+  }
+  EXPECT_LE(steepest, 0.2 * 1e-3 / 0.5 + 1e-12);
+  EXPECT_TRUE(check.passed());
+}
+
 TEST(AxisCheck, IsWithoutTorqueOnceCancelled) {
   AxisCheck check(traits(2));
   Springs springs{{0.06, 0.06}};

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -54,6 +55,25 @@ TEST_F(GuardedPipe, GetsTheStopReportsWhenWeAreKilled) {
     raise(SIGKILL);
   });
   EXPECT_EQ(received(), kStopBytes);
+}
+
+// While the kernel writes a dump, the guardian hears nothing of the crash.
+TEST_F(GuardedPipe, LeavesNoCoreDump) {
+  in_another_process([](int device) {
+    rlimit core{};
+    getrlimit(RLIMIT_CORE, &core);
+    core.rlim_cur = core.rlim_max;
+    setrlimit(RLIMIT_CORE, &core);
+    const int told = dup(device);
+    const Guardian guardian(device, kStop);
+    getrlimit(RLIMIT_CORE, &core);
+    const auto limit = static_cast<std::uint8_t>(std::min<rlim_t>(core.rlim_cur, 0xFF));
+    EXPECT_EQ(write(told, &limit, 1), 1);
+    raise(SIGKILL);
+  });
+  const Report all = received();
+  ASSERT_EQ(all.size(), 1 + kStopBytes.size());
+  EXPECT_LE(all[0], 1);
 }
 
 TEST_F(GuardedPipe, GetsThemWhenWeEndWithoutAWord) {

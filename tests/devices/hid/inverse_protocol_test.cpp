@@ -210,9 +210,29 @@ TEST_F(AnInverse3, HasTheButtonsOfItsGrip) {
   all["wireless_verse_grip"] = json::array({grip});
   ASSERT_EQ(decode(all), Decoded::reading);
   EXPECT_EQ(reading.buttons, 6u);
+  EXPECT_EQ(reading.buttons_known, 7u);
+  const json other{{"device_id", "3"}, {"state", {{"buttons", {{"a", true}, {"b", false}}}}}};
+  all["wireless_verse_grip"] = json::array({other, grip});
+  ASSERT_EQ(decode(all), Decoded::reading);
+  EXPECT_EQ(reading.buttons, 6u) << "the grip that was there first";
+  all["wireless_verse_grip"] = json::array({other});
+  ASSERT_EQ(decode(all), Decoded::reading);
+  EXPECT_EQ(reading.buttons_known, 0u) << "another hand's";
   all.erase("wireless_verse_grip");
   ASSERT_EQ(decode(all), Decoded::reading);
   EXPECT_EQ(reading.buttons, 0u);
+  EXPECT_EQ(reading.buttons_known, 0u);
+}
+
+TEST_F(AnInverse3, HasNoButtonsAmongSeveralGrips) {
+  open();
+  json all = message({device("049D", 0, -0.12, 0.16)});
+  for (const char* id : {"61548", "3"}) {
+    all["wireless_verse_grip"].push_back(
+        {{"device_id", id}, {"state", {{"buttons", {{"a", true}, {"b", true}}}}}});
+  }
+  ASSERT_EQ(decode(all), Decoded::reading);
+  EXPECT_EQ(reading.buttons_known, 0u);
 }
 
 TEST_F(AnInverse3, GetsItsTorqueAsAForceOnTheCursor) {

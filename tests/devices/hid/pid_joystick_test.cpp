@@ -95,6 +95,7 @@ TEST_F(OpenPidJoystick, ReadsItsAxes) {
   EXPECT_DOUBLE_EQ(reading.x[0], -PidSettings{}.range);
   EXPECT_DOUBLE_EQ(reading.x[1], PidSettings{}.range);
   EXPECT_EQ(reading.buttons, 4u);
+  EXPECT_EQ(reading.buttons_known & 7u, 7u);
   joystick.decode(Report{1, 0x00, 0x00, 0x00, 0x00, 0x00}, reading);
   EXPECT_NEAR(reading.x[0], 0, 0.001);
 }

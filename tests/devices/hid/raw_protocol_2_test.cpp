@@ -80,6 +80,7 @@ TEST_F(OpenRaw2, ReadsAReportThatAnotherProgramMade) {
   EXPECT_TRUE(reading.calibrated);
   EXPECT_FALSE(reading.fault);
   EXPECT_EQ(reading.buttons, 2u);
+  EXPECT_EQ(reading.buttons_known, ~0u);
   EXPECT_EQ(reading.no_force, NoForce::warm);
   EXPECT_EQ(reading.warmth, 0.75f);
   EXPECT_EQ(reading.orientation, (std::array{1.0, 0.0, 0.0, 0.0}));

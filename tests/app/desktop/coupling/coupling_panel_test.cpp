@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "app/desktop/widgets/modal.h"
 #include "app/run/fitted_gains.h"
 #include "app/style/words.h"
 #include "core/dynamics/arm.h"
@@ -203,6 +204,28 @@ TEST_F(CouplingWords, SayWhichPromiseIsBrokenAndByHowMuch) {
   EXPECT_TRUE(broken("Least stable ? in this grip")) << "0.35 is below 0.4";
   EXPECT_THAT(hint("Least stable ? in this grip"),
               HasSubstr("? 0.35 is below 0.400, the limit of this grip"));
+}
+
+// A slider's tooltip comes half a second after the mouse.
+TEST_F(CouplingWords, SayAtASliderWhichPromiseItsValueBreaks) {
+  const auto said = [&] {
+    draw();
+    const auto slider = noted_place("panel", "coupling.eta");
+    EXPECT_TRUE(slider) << words();
+    if (!slider) return std::string();
+    show_mouse(*slider);
+    frames(40);
+    std::string all;
+    for (const test::DrawnText& each : test::drawn_texts()) {
+      if (each.window.starts_with("##Tooltip")) all += each.text + ' ';
+    }
+    return all;
+  };
+  p_.eta = 0.7;
+  EXPECT_THAT(said(), AllOf(HasSubstr("coupling.eta, "), Not(HasSubstr("is below"))));
+  p_.eta = 0.35;
+  a_.above_eta_min = false;
+  EXPECT_THAT(said(), HasSubstr("0.35 is below ?_min 0.600 of equation (25)"));
 }
 
 // Condition (3) asks, by core/coupling/laws.h: of the device (2 + j/2) b_vc + k_vc (T +

@@ -92,6 +92,18 @@ TEST_F(NumbersOfATick, AreThoseOfItsRow) {
   }
 }
 
+TEST_F(NumbersOfATick, SayWhereAndHowTheProxyIsPushed) {
+  const Vec3 point(0.01, 0.02, 0.04), force(1, -2, 2);
+  std::ranges::copy(point, in(Column::contact_point).begin());
+  std::ranges::copy(force, in(Column::contact_force).begin());
+  draw();
+  EXPECT_FALSE(find("The proxy touches nothing."));
+  for (const char* millimetres : {"10.000", "20.000", "40.000"}) {
+    EXPECT_TRUE(find(millimetres)) << millimetres << " is not in:\n" << words();
+  }
+  EXPECT_THAT(hint("3.000"), HasSubstr("on the proxy: 1.0000, -2.0000, 2.0000 N"));
+}
+
 // The tips' distance and the motors' force, by the arm's own kinematics.
 TEST_F(NumbersOfATick, ReckonAtTheTips) {
   const Arm<kAnyDof> arm(test::omni());

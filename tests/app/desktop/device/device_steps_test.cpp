@@ -42,6 +42,22 @@ TEST_F(TheDevicesCard, WaitsForTheDevice) {
   }
 }
 
+TEST_F(TheDevicesCard, SaysWhatTheCheckOfItsAxesDoes) {
+  static constexpr DeviceKind kPushes{.key = "test", .name = "Test", .pushes = true};
+  FoundDevice found;
+  found.place = {"A device", "device", ""};
+  found.kind = &kPushes;
+  const auto says_it = [&] {
+    desktop->devices.hub().take({found});  // it is in no list of real devices
+    frames(1);
+    if (const auto button = find("Check the axes", kSidePanel)) show_mouse(button->middle());
+    const std::string said = sentences("##Tooltip");
+    return said.find("with a tenth of the force") != std::string::npos &&
+           said.find("Let go of the device.") != std::string::npos;
+  };
+  EXPECT_TRUE(until(says_it)) << words(kSidePanel) << sentences("##Tooltip");
+}
+
 TEST_F(TheDevicesCard, SaysWhatIsAssumedAndLeadsToTheIdentification) {
   plug_in();
   const std::string said = says();

@@ -142,7 +142,7 @@ TEST_F(ADesktop, DoesNotArmWhenItStartsOver) {
   desktop->live.start_over();
   frames(80);
   EXPECT_EQ(arming(), Arming::off);
-  desktop->live.toggle_force();
+  desktop->toggle_force();
   EXPECT_TRUE(until([&] { return arming() == Arming::on; }));
 }
 
@@ -287,6 +287,18 @@ TEST_F(ADesktop, HasWhatMovesWithADeviceAsWell) {
   desktop->world.close_device();
   EXPECT_TRUE(has("die"));
   EXPECT_TRUE(until(lies));
+}
+
+TEST_F(ADesktop, TakesAButtonForNothingThatIsHeldBeforeTheFirstReport) {
+  auto wire = std::make_shared<Wire>();
+  wire->buttons_known = 0;
+  desktop->world.open_device(std::make_unique<WiredDevice>(3, wire));
+  await_device();
+  frames(120);  // longer than a device takes to settle
+  wire->buttons = 2;
+  wire->buttons_known = ~0u;
+  frames(30);
+  EXPECT_EQ(arming(), Arming::off);
 }
 
 TEST_F(ADesktop, TakesAButtonThatWasHeldWhilePluggingInForNothing) {

@@ -1,4 +1,6 @@
 // Dialogs of the window: what each of them offers, refuses and hands over.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 
@@ -458,6 +460,28 @@ TEST_F(Dialog, OfIdentifyingTriesASimulatedDevice) {
   EXPECT_TRUE(until([&] { return !desktop->identify.moving(); }));
 }
 
+TEST_F(Dialog, OfIdentifyingShowsWhatWasFoundOfEachJoint) {
+  const std::string title = "Identify the device";
+  run("device.identify");
+  frames(4);
+  click("Begin (Enter)", title);
+  const auto found = [&] { return desktop->identify.phase() == IdentifyController::Phase::found; };
+  ASSERT_TRUE(until(found) || until(found) || until(found)) << desktop->identify.wrong();
+  frames(4);
+  const std::string shown = words(title);
+  const Identification& result = desktop->identify.done()->identification;
+  ASSERT_EQ(result.found.joints.size(), 3u);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const JointFinding& joint = result.found.joints[j];
+    for (const std::string& text :
+         {result.found.arm.joints[j].name, fmt::format("{:.3f}", result.inertia_in_file[j] / 1e-3),
+          fmt::format("{:.1f} %", 100 * joint.residual / joint.torque)}) {
+      EXPECT_THAT(shown, HasSubstr(text)) << "of joint " << j;
+    }
+  }
+  EXPECT_TRUE(find("Again", title));
+}
+
 // A motion that was stopped is no result: the dialog asks again and says so, until the next one
 // begins.
 TEST_F(Dialog, OfIdentifyingSaysThatItWasStopped) {
@@ -559,6 +583,24 @@ TEST_F(Dialog, OfAPlotChoosesItsChannels) {
   click("Remove plot");
   EXPECT_EQ(desktop->settings.plot_choices.size(), plot);
   EXPECT_EQ(desktop->dialog.name(), "");
+}
+
+TEST_F(Dialog, OfAPlotTakesItsNameInAFieldAsWideAsTheDialog) {
+  const char* title = "What the plot shows";
+  run("plots.add");
+  frames(4);
+  const std::size_t plot = desktop->plots.chosen();
+  const std::vector<test::DrawnText> all = test::drawn_texts();
+  const auto field = std::ranges::find_if(all, [&](const test::DrawnText& each) {
+    return each.window.starts_with(title) && each.text.starts_with("name:");
+  });
+  ASSERT_NE(field, all.end()) << words(title);
+  const ImGuiWindow* window = ImGui::FindWindowByName(title);
+  ASSERT_NE(window, nullptr);
+  click(ImVec2{window->WorkRect.Max.x - 5, field->middle().y});
+  write("mine");
+  ASSERT_LT(plot, desktop->settings.plot_choices.size());
+  EXPECT_EQ(desktop->settings.plot_choices[plot].title, "mine");
 }
 
 }  // namespace

@@ -92,6 +92,18 @@ TEST_F(MapOfASweep, NamesMeasureAxesAndHowFarItIs) {
   EXPECT_THAT(shown, HasSubstr("A click runs the point again and plays it"));
 }
 
+TEST_F(MapOfASweep, NamesEachChoiceBesideIt) {
+  open(test::sweep_plan(dir, kMapPlan));
+  for (const auto& [label, chosen] : {std::pair("over", "Grip stiffness"),
+                                      {"and", "Impedance scaling \xCE\xB7"},
+                                      {"Coupling", "standard"}}) {
+    const auto name = find(label, "Sweep"), choice = find(chosen, "Sweep");
+    ASSERT_TRUE(name && choice) << label << " or " << chosen << " is not in:\n" << words("Sweep");
+    EXPECT_LT(name->max.x, choice->min.x) << label;
+    EXPECT_NEAR(name->middle().y, choice->middle().y, 6) << label << ": in one line";
+  }
+}
+
 // Points are numbered with the last axis fastest: kind, stiffness (1000 first), eta.
 TEST_F(MapOfASweep, SaysThePointUnderTheMouse) {
   open(test::sweep_plan(dir, kMapPlan));

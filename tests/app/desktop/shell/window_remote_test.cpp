@@ -118,6 +118,14 @@ TEST_F(LedWindow, PlaysSessionsAndHands) {
   EXPECT_EQ(ask({{"do", "open"}, {"hand", "touch.csv"}})["playing"], true);
 }
 
+TEST_F(LedWindow, RefusesASessionThatCannotBeReadWhileAnotherOneIsShown) {
+  EXPECT_EQ(ask({{"do", "open"}, {"session", "gears.h5"}})["playing"], true);
+  const fs::path broken = dir / "broken.h5";
+  std::ofstream(broken) << "x";
+  EXPECT_THAT(refused({{"do", "open"}, {"session", broken.string()}}), HasSubstr("broken.h5"));
+  EXPECT_FALSE(desktop->playback.on()) << "it is not what was asked for";
+}
+
 TEST_F(LedWindow, RefusesToOpenWhatIsNotThereOrNotAllowed) {
   EXPECT_THAT(refused({{"do", "open"}, {"scene", "nowhere.toml"}}),
               HasSubstr("there is no file \"nowhere.toml\""));

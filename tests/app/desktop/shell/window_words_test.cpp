@@ -488,8 +488,11 @@ TEST_F(Words, OfFoldedPanelsComeBackByTheirTabs) {
 }
 
 TEST_F(Words, OfABlindWindowTellNoLaw) {
+  const float beside_panels = desktop->shown.picture.width();
+  ASSERT_LT(beside_panels, static_cast<float>(width));
   desktop->blind = true;
   frames(4);
+  EXPECT_EQ(desktop->shown.picture.width(), static_cast<float>(width)) << "the scene is all of it";
   const std::string shown = words();
   for (const char* word : {"Predictive", "PREDICTIVE", "Coupling", "File", "Record"}) {
     EXPECT_THAT(shown, Not(HasSubstr(word)));
