@@ -85,8 +85,8 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
       fmt::format("             condition (3) {}; by equation (25) the proposed law is passive at "
                   "an eta of {:.2f} or above",
                   a.condition3.holds ? "is met" : "is BROKEN", a.eta_min));
-  if (std::string weak = weak_spring_text(arm, p); !weak.empty()) {
-    report.warnings.push_back(std::move(weak));
+  if (const std::string weak = weak_spring_text(arm, p); !weak.empty()) {
+    report.facts.push_back("             note: " + weak);
   }
   if (!a.condition3.holds) {
     report.warnings.push_back(

@@ -32,16 +32,23 @@ void each_joint(const TomlTable& entry, const char* key, const char* allowed, co
   }
 }
 
+// Returns whether one of the words of a key, between dots and underscores, is a limit's.
+bool names_a_limit(std::string_view key) {
+  std::string words = fmt::format("_{}_", key);
+  std::ranges::replace(words, '.', '_');
+  return words.find("_limit") != std::string::npos ||
+         std::ranges::any_of(kSafetyLimits, [&](const auto& limit) {
+           return words.find(fmt::format("_{}_", limit.key)) != std::string::npos;
+         });
+}
+
 // Refuses limits outside of their table, and tables that are unknown: nobody would read them, and
 // the device would have its widest limits.
 void refuse_limits_elsewhere(const TomlTable& table, const std::vector<const char*>& known) {
   table.refuse_strays(
       known,
       [](std::string_view key, const toml::node& node) {
-        return node.is_table() || key.find("limit") != std::string_view::npos ||
-               std::ranges::any_of(kSafetyLimits, [&](const auto& limit) {
-                 return key.find(limit.key) != std::string_view::npos;
-               });
+        return node.is_table() || node.is_array_of_tables() || names_a_limit(key);
       },
       "limits under [device.\"ID\".limits] only");
 }
@@ -152,14 +159,20 @@ const toml::table* devices_in(const toml::table& store, const fs::path& file) {
   const toml::node* node = store.get("device");
   if (node == nullptr) return nullptr;
   if (!node->is_table()) TomlTable(store, file.string(), "").refuse("device", "a table");
+  // A limit without a device's id would be nobody's.
+  const TomlTable devices(*node->as_table(), file.string(), "device");
+  devices.refuse_strays(
+      {},
+      [](std::string_view key, const toml::node& each) {
+        return names_a_limit(key) || key == "axis" || key == "compensation" || !each.is_table();
+      },
+      "a table for each device, [device.\"ID\"]");
   return node->as_table();
 }
 
 // Errors: FileError.
 DeviceNotes notes_in(const toml::table& devices, const std::string& id, const fs::path& file) {
-  const toml::node& node = *devices.get(id);
-  if (!node.is_table()) TomlTable(devices, file.string(), "device").refuse(id.c_str(), "a table");
-  return read_notes({*node.as_table(), file.string(), entry_path(id)});
+  return read_notes({*devices.get(id)->as_table(), file.string(), entry_path(id)});
 }
 
 }  // namespace

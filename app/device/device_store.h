@@ -118,9 +118,9 @@ std::filesystem::path device_store_file();
 
 // Reads the store; empty if there is no file.
 DeviceStore load_device_store(const std::filesystem::path& file);
-// Writes the changes since `before` into the present file, and keeps changes by other programs and
-// unknown keys. Writes nothing over entries that cannot be understood. Returns the error; empty:
-// none.
+// Writes the changes since `before` into the present file. Keeps changes by other programs, and
+// unknown keys that are no tables and name no limit. Writes nothing over entries that cannot be
+// understood. Returns the error; empty: none.
 std::string save_device_store(const DeviceStore& before, const DeviceStore& now,
                               const std::filesystem::path& file);
 

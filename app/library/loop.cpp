@@ -130,8 +130,8 @@ LoopError::~LoopError() = default;
 
 struct Loop::State {
   static constexpr std::uint64_t kMeasured = 500;  // ticks
-  // Real motors trip where ticks come faster than this part of the period allows, for longer than a
-  // late tick is made up for: speeds would be judged too small.
+  // Ticks may come faster than the period says by this part of it. Those of real motors that come
+  // faster add up, and trip them from kMostLead on: their speeds are judged too small.
   static constexpr double kFaster = 0.1;
   static constexpr double kMostLead = 0.05;  // [s]
 
@@ -151,9 +151,9 @@ struct Loop::State {
     mean_period += share * (elapsed - mean_period);
     lead = std::clamp(lead + (1 - kFaster) * plan.parameters.tick - elapsed, 0.0, 2 * kMostLead);
   }
-  std::string pace_text() const {
+  std::string pace_text(double pace) const {
     return fmt::format("ticks come every {:.2g} ms, not every {:.2g} ms as `period` says",
-                       1e3 * mean_period, 1e3 * plan.parameters.tick);
+                       1e3 * pace, 1e3 * plan.parameters.tick);
   }
   bool at_motor_limit() const;  // after a tick, as at_tip_limit()
   bool at_tip_limit() const;
@@ -183,8 +183,8 @@ struct Loop::State {
   Vec3 first_tip = Vec3::Zero();  // of the device before the first tick [m]
   double mean_period = 0;  // time between ticks as measured, over about kMeasured of them [s]
   std::uint64_t measured = 0;
-  double lead = 0;     // of the ticks over the time that has passed [s]
-  bool early = false;  // for which force has tripped
+  double lead = 0;        // time by which the ticks are ahead of the clock [s]
+  double early_pace = 0;  // mean period when this tripped the force [s]; 0: it did not
   // Positions and one more of the reading that was not one a joint; 0 once force may be back.
   std::size_t wrong_count = 0;
   const char* refused = nullptr;  // what is wrong with a reading of simulated motors
@@ -471,7 +471,8 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   input.dt = elapsed;
   s.step(input);
   if (whole && s.rig->force_state() != ForceState::lost) s.wrong_count = 0;
-  s.early = early || (s.early && s.rig->force_state() == ForceState::fault);
+  if (early && s.early_pace == 0) s.early_pace = s.mean_period;
+  if (reading.fault || !timed || s.rig->force_state() != ForceState::fault) s.early_pace = 0;
   return s.device->torque();
 }
 
@@ -486,7 +487,7 @@ std::string DeviceLoop::force_text() const {
                        s.wrong_count - 1, joints());
   }
   if (s.refused != nullptr) return fmt::format("force off: {}", s.refused);
-  if (s.early) return "force off: " + s.pace_text();
+  if (s.early_pace > 0) return "force off: " + s.pace_text(s.early_pace);
   const ForceState why = s.rig->force_state();
   std::string text = limpid::force_text(why);
   if (why == ForceState::frozen && force_share() > 0) {
@@ -512,7 +513,7 @@ std::string DeviceLoop::force_text() const {
   const double T = period();
   constexpr double kOff = 0.2;  // of the period
   if (s.measured == State::kMeasured && std::abs(s.mean_period - T) > kOff * T) {
-    all.push_back(s.pace_text());
+    all.push_back(s.pace_text(s.mean_period));
   }
   return fmt::format("{}", fmt::join(all, "; "));
 }

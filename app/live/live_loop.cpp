@@ -80,7 +80,8 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   guided_.reset(home_.target);
   led_ = false;
   probing_ = false;
-  force_.take();  // what was asked before has no meaning now
+  force_.take();        // what was asked before has no meaning now
+  snapshots_.update();  // the last loop's
   tripped_ = false;
   tripped_at_.reset();
   beat_.store(MonotonicTime{}.now());

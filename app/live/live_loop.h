@@ -165,7 +165,7 @@ class LiveLoop {
     slots_.collect();
     paths_.collect();
     const bool news = snapshots_.update();
-    note_trip();
+    if (news) note_trip();
     return news;
   }
   const Snapshot& snapshot() const { return snapshots_.front(); }

@@ -131,8 +131,8 @@ void ServedSession::watch_buttons() {
   const std::uint32_t pressed = buttons_.take(loop().snapshot().reading);
   if ((pressed & 2) == 0 || loop().toggle_force()) return;
   fmt::print(stderr,
-             "limpid: note: the force switched itself off a moment ago; press the button again to "
-             "arm it\n");
+             "limpid: note: the force switched itself off a moment ago; wait a second, then press "
+             "the button to arm it\n");
 }
 
 json ServedSession::state() const {

@@ -22,10 +22,14 @@
 #endif
 namespace limpid {
 
-using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
-[[gnu::always_inline]] inline Four& four(double* x) { return *reinterpret_cast<Four*>(x); }
-[[gnu::always_inline]] inline const Four& four(const double* x) {
-  return *reinterpret_cast<const Four*>(x);
+using Four [[gnu::vector_size(32)]] = double;
+// Holds four numbers at any place; columns need not begin at multiples of 32 bytes.
+struct [[gnu::packed, gnu::may_alias]] FourAt {
+  Four v;
+};
+[[gnu::always_inline]] inline FourAt& four(double* x) { return *reinterpret_cast<FourAt*>(x); }
+[[gnu::always_inline]] inline const FourAt& four(const double* x) {
+  return *reinterpret_cast<const FourAt*>(x);
 }
 
 // The functions below are for N joints known when compiling, or for any number (kAnyDof), which
@@ -40,7 +44,8 @@ inline constexpr int kByFours = -4;
   const auto [a, b, c, d] = columns;
   const auto [fa, fb, fc, fd] = factors;
   for (Eigen::Index i = first; i < n; i += 4) {
-    four(x + i) -= (four(a + i) * fa + four(b + i) * fb) + (four(c + i) * fc + four(d + i) * fd);
+    four(x + i).v -=
+        (four(a + i).v * fa + four(b + i).v * fb) + (four(c + i).v * fc + four(d + i).v * fd);
   }
 }
 
@@ -55,7 +60,7 @@ template <int N, class Column, class Factor>
     for (; k < columns % 4; ++k) {
       const double* const a = column(k);
       const double fa = factor(k);
-      for (Eigen::Index i = start; i < n; i += 4) four(x + i) -= four(a + i) * fa;
+      for (Eigen::Index i = start; i < n; i += 4) four(x + i).v -= four(a + i).v * fa;
     }
     for (; k < columns; k += 4) {
       take_four({column(k), column(k + 1), column(k + 2), column(k + 3)},
@@ -148,7 +153,7 @@ template <int N>
     if (j < odd || j + 4 > columns) {
       const Eigen::Index fours = j < odd ? odd : (j - odd) / 4 * 4 + odd + 4;
       for (Eigen::Index i = j + 1; i < fours; ++i) x[i] -= a[i] * x[j];
-      for (Eigen::Index i = fours; i < n; i += 4) four(x + i) -= four(a + i) * x[j];
+      for (Eigen::Index i = fours; i < n; i += 4) four(x + i).v -= four(a + i).v * x[j];
       ++j;
       continue;
     }
@@ -190,7 +195,7 @@ template <int N>
     const double* const a = LU + j * n;
     x[j] *= a[j];
     for (Eigen::Index i = even; i < j; ++i) x[i] -= a[i] * x[j];
-    for (Eigen::Index i = 0; i < even; i += 4) four(x + i) -= four(a + i) * x[j];
+    for (Eigen::Index i = 0; i < even; i += 4) four(x + i).v -= four(a + i).v * x[j];
   }
   for (Eigen::Index j = even - 4; j >= 0; j -= 4) {
     const double *a = LU + j * n, *b = a + n, *c = b + n, *d = c + n;

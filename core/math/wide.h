@@ -64,7 +64,7 @@ struct Tile {
 
   [[gnu::always_inline]] void load(const double* from, Index p) {
     for (int c = 0; c < W; ++c) {
-      for (int r = 0; r < R; ++r) x[r][c] = four(from + c * p + 4 * r);
+      for (int r = 0; r < R; ++r) x[r][c] = four(from + c * p + 4 * r).v;
     }
   }
   [[gnu::always_inline]] void clear() {
@@ -74,7 +74,7 @@ struct Tile {
   }
   [[gnu::always_inline]] void store(double* to, Index p) const {
     for (int c = 0; c < W; ++c) {
-      for (int r = 0; r < R; ++r) four(to + c * p + 4 * r) = x[r][c];
+      for (int r = 0; r < R; ++r) four(to + c * p + 4 * r).v = x[r][c];
     }
   }
   // Subtracts columns k of X times f(c, k) from column c.
@@ -85,7 +85,7 @@ struct Tile {
     for (Index left = to - from; left > 0; --left, column += p, factors += f.by_k) {
       for (int c = 0; c < W; ++c) {
         const double factor = factors[c * f.by_column];
-        for (int r = 0; r < R; ++r) x[r][c] -= four(column + 4 * r) * factor;
+        for (int r = 0; r < R; ++r) x[r][c] -= four(column + 4 * r).v * factor;
       }
     }
   }
@@ -232,7 +232,7 @@ template <int W>
       v[i][j] = -taken * scale[i];
     }
   }
-  for (int j = 0; j < 4; ++j) four(to + 4 * j) = Four{v[0][j], v[1][j], v[2][j], v[3][j]};
+  for (int j = 0; j < 4; ++j) four(to + 4 * j).v = Four{v[0][j], v[1][j], v[2][j], v[3][j]};
 }
 
 // L, given as A's lower triangle, becomes its lower Cholesky factor; entries above its blocks of
@@ -416,13 +416,13 @@ struct SolveLower {
   [[gnu::always_inline]] void operator()(Index c) const {
     const Index p = rows<N>(n);
     const double *const a = L + c * p, *const v = corners + 4 * c;
-    Four solved = four(v) * x[c];
-    for (int k = 1; k < W; ++k) solved += four(v + 4 * k) * x[c + k];
-    four(x + c) = solved;
+    Four solved = four(v).v * x[c];
+    for (int k = 1; k < W; ++k) solved += four(v + 4 * k).v * x[c + k];
+    four(x + c).v = solved;
     for (Index i = c + 4; i < p; i += 4) {
-      Four taken = four(a + i) * solved[0];
-      for (int k = 1; k < W; ++k) taken += four(a + k * p + i) * solved[k];
-      four(x + i) -= taken;
+      Four taken = four(a + i).v * solved[0];
+      for (int k = 1; k < W; ++k) taken += four(a + k * p + i).v * solved[k];
+      four(x + i).v -= taken;
     }
   }
 };
@@ -439,13 +439,13 @@ struct SolveTransposed {
     const double *const a = L + c * p, *const v = corners + 4 * c;
     Four part[4] = {}, sums;
     for (Index i = c + 4; i < p; i += 4) {
-      for (int k = 0; k < W; ++k) part[k] += four(a + k * p + i) * four(x + i);
+      for (int k = 0; k < W; ++k) part[k] += four(a + k * p + i).v * four(x + i).v;
     }
     sums_of(part, sums);
-    const Four rest = four(x + c) - sums;
-    for (int k = 0; k < 4; ++k) part[k] = four(v + 4 * k) * rest;
+    const Four rest = four(x + c).v - sums;
+    for (int k = 0; k < 4; ++k) part[k] = four(v + 4 * k).v * rest;
     sums_of(part, sums);
-    four(x + c) = sums;
+    four(x + c).v = sums;
   }
 };
 
@@ -460,9 +460,9 @@ struct TakeTimes {
     const Index p = rows<N>(n);
     const double* const a = A + c * p;
     for (Index i = 0; i < p; i += 4) {
-      Four taken = four(a + i) * x[c];
-      for (int k = 1; k < W; ++k) taken += four(a + k * p + i) * x[c + k];
-      four(y + i) -= taken;
+      Four taken = four(a + i).v * x[c];
+      for (int k = 1; k < W; ++k) taken += four(a + k * p + i).v * x[c + k];
+      four(y + i).v -= taken;
     }
   }
 };
@@ -477,10 +477,10 @@ struct TakeTransposedTimes {
     const double* const a = A + c * p;
     Four part[4] = {}, sums;
     for (Index i = 0; i < p; i += 4) {
-      for (int k = 0; k < W; ++k) part[k] += four(a + k * p + i) * four(x + i);
+      for (int k = 0; k < W; ++k) part[k] += four(a + k * p + i).v * four(x + i).v;
     }
     sums_of(part, sums);
-    four(y + c) -= sums;
+    four(y + c).v -= sums;
   }
 };
 
@@ -489,7 +489,7 @@ template <int N>
 [[gnu::always_inline]] inline void clear_above_in(Index n, double* L) {
   const Index p = rows<N>(n);
   for (Index c = 4; c < columns<N>(n); ++c) {
-    for (Index i = 0; i < c / 4 * 4; i += 4) four(L + c * p + i) = Four{};
+    for (Index i = 0; i < c / 4 * 4; i += 4) four(L + c * p + i).v = Four{};
   }
 }
 
@@ -502,7 +502,7 @@ template <int N>
       const double* const from = A + j * p + i;
       Four a[4] = {};
       for (Index k = 0; k < 4; ++k) {
-        if (j + k < columns<N>(n)) a[k] = four(from + k * p);
+        if (j + k < columns<N>(n)) a[k] = four(from + k * p).v;
       }
       const Four ab_low = __builtin_shufflevector(a[0], a[1], 0, 4, 2, 6);
       const Four ab_high = __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7);
@@ -513,7 +513,7 @@ template <int N>
                          __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7),
                          __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
       for (Index k = 0; k < 4; ++k) {
-        if (i + k < columns<N>(n)) four(B + (i + k) * p + j) = b[k];
+        if (i + k < columns<N>(n)) four(B + (i + k) * p + j).v = b[k];
       }
     }
   }
@@ -526,13 +526,13 @@ template <int N>
   for (Index c = 0; c < most; ++c, A += most, W += p) {
     Index i = 0;
     for (; i + 8 <= whole; i += 8) {
-      four(W + i) = four(A + i);
-      four(W + i + 4) = four(A + i + 4);
+      four(W + i).v = four(A + i).v;
+      four(W + i + 4).v = four(A + i + 4).v;
     }
-    if (i < whole) four(W + i) = four(A + i);
-    if (most - whole == 1) four(W + whole) = Four{A[whole]};
-    if (most - whole == 2) four(W + whole) = Four{A[whole], A[whole + 1]};
-    if (most - whole == 3) four(W + whole) = Four{A[whole], A[whole + 1], A[whole + 2]};
+    if (i < whole) four(W + i).v = four(A + i).v;
+    if (most - whole == 1) four(W + whole).v = Four{A[whole]};
+    if (most - whole == 2) four(W + whole).v = Four{A[whole], A[whole + 1]};
+    if (most - whole == 3) four(W + whole).v = Four{A[whole], A[whole + 1], A[whole + 2]};
   }
 }
 

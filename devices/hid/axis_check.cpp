@@ -18,6 +18,8 @@ constexpr double kAllowed = 0.15;  // part of the axis' whole way
 constexpr double kSteps = 8;       // least kEnough, in steps of the encoder
 constexpr double kSudden = 0.015;  // a motion before this is not the small torque's [s]
 constexpr double kClear = 2;       // least ratio of the axis' motion to any other's
+constexpr double kAfterStall = 0.001;  // counted of a stall, in which nobody looked [s]
+constexpr int kMostAgain = 5;          // pushes interrupted, of all axes
 constexpr int kPhases = 5;
 
 constexpr bool is_push(int phase) { return phase % 2 == 1; }
@@ -47,6 +49,9 @@ const char* explain(AxisVerdict verdict) {
     case AxisVerdict::beyond_limit:
       return "The axis passed a limit of speed, range or energy. Bring the device near its middle, "
              "let go or hold the device lightly, and try again.";
+    case AxisVerdict::stalled:
+      return "The check or the device stood still for more than 5 ms in each of several pushes. "
+             "Close other programs, and try again.";
     case AxisVerdict::given_up: return "The check was interrupted; nothing is stored.";
   }
   return "";
@@ -128,22 +133,25 @@ std::span<const double> AxisCheck::step(const Tick& in) noexcept {
     std::copy_n(in.x.begin(), joints, x_.begin());
     if (!started_) start_ = x_;
     started_ = true;
-    time_ += in.T;
-    if (in.gap) rest_again();
+    const double T = in.gap ? std::min(in.T, kAfterStall) : in.T;
+    time_ += T;
+    if (in.gap && is_push(phase_)) rest_again();
+    if (done_) return {torque_.data(), joints};
     if (phase_ > 0 && furthest(home_, allowed_) > 1) {
       end(AxisVerdict::too_far);
     } else if (is_push(phase_)) {
       push();
     } else {
-      rest(in.T);
+      rest(T);
     }
   }
   return {torque_.data(), joints};
 }
 
-// Goes back to the rest before this push.
+// Goes back to the rest before this push, a few times.
 void AxisCheck::rest_again() noexcept {
-  if (is_push(phase_)) --phase_;
+  if (++again_ > kMostAgain) return end(AxisVerdict::stalled);
+  --phase_;
   torque_.fill(0);
   time_ = still_ = 0;
   start_ = x_;

@@ -34,6 +34,7 @@ enum class AxisVerdict : std::uint8_t {
   nothing_moved,  // or not both ways: no arm, or held too firmly
   too_far,        // the axis moved farther or faster than so little force should move it
   restless,       // the axis moved by itself
+  stalled,        // pushes were interrupted again and again
   given_up,       // cancelled, or the device was not well
   no_motor,       // nothing can push the axis, so that it needs no check
   beyond_limit,   // passed a limit of speed, range or energy that is set for the device
@@ -101,6 +102,7 @@ class AxisCheck {
   int phase_ = 0;  // phase of the axis: rest, push, rest, push back, rest
   bool done_ = false;
   double time_ = 0;       // in the phase [s]
+  int again_ = 0;         // pushes that began again after a stall, of all axes
   double still_ = 0;      // time in it without a motion [s]
   int sense_ = 0;         // sense of the motion of the first push
   bool started_ = false;  // x_ is known

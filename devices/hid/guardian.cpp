@@ -95,8 +95,8 @@ void stop_device(int device, const std::vector<Report>& reports) {
   }
 }
 
-// 0 would leave dumps that are piped into a program, as most systems do; the kernel takes 1 for
-// none at all.
+// Lowers this process' limit of core dumps to 1 byte, which Linux takes for none at all. At 0 it
+// would still pipe them into a program.
 void leave_no_core_dump() {
   rlimit core{};
   if (getrlimit(RLIMIT_CORE, &core) != 0) return;

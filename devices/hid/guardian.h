@@ -5,7 +5,8 @@
 // reports to the device, and ends. It learns of the end before the kernel frees our memory, which
 // can take tens of milliseconds. It cannot help if it is killed with us, or if we hang or are
 // stopped (SIGSTOP, Ctrl-Z): the devices' own watchdogs have to. A core dump would hold the lock
-// for as long as the kernel writes it. Therefore a process leaves none once it has had a guardian.
+// for as long as the kernel writes it. Therefore a process leaves none once it has had a guardian,
+// unless its limit was fixed at 0: then dumps that are piped into a program go on.
 #pragma once
 
 #include <sys/types.h>

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "core/dynamics/arm_description.h"
 #include "core/realtime/clock.h"
@@ -194,13 +195,15 @@ Decoded InverseProtocol::decode(std::span<const std::uint8_t> report,
   return Decoded::reading;
 }
 
-// Takes the buttons of the grip that was alone when the first one was seen. Of several grips nobody
-// knows which one is in the hand that holds the device.
+// Takes the buttons of the grip that was alone in the first list that had any. Of several grips
+// nobody knows which one is in the hand that holds the device.
 template <class Json>
 void InverseProtocol::take_buttons(const Json& grips, DeviceReading& reading) {
   reading.buttons = reading.buttons_known = 0;
-  if (!grips.is_array()) return;
-  if (grip_.empty() && grips.size() == 1) grip_ = text_of(at(grips.front(), "device_id"));
+  if (!grips.is_array() || grips.empty()) return;
+  if (!std::exchange(seen_grips_, true) && grips.size() == 1) {
+    grip_ = text_of(at(grips.front(), "device_id"));
+  }
   for (const Json& grip : grips) {
     if (grip_.empty() || text_of(at(grip, "device_id")) != grip_) continue;
     const Json& buttons = at(at(grip, "state"), "buttons");

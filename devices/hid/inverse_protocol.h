@@ -63,7 +63,9 @@ class InverseProtocol final : public HidProtocol {
   template <class Json>
   void take_buttons(const Json& grips, DeviceReading& reading);
 
-  std::string id_, grip_;
+  std::string id_;
+  std::string grip_;         // the grip whose buttons count; empty: none do
+  bool seen_grips_ = false;  // in a message
   DeviceTraits traits_;
   std::vector<Report> stop_reports_;
   nanoseconds now_{}, asked_{}, seen_{};

@@ -64,6 +64,9 @@ void SpaceMouse::open(HidTransport&) {}
 Decoded SpaceMouse::decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept {
   const bool axes = decode_axes(report, reading);
   const bool buttons = decode_buttons(report, buttons_, reading.buttons, reading.buttons_known);
+  // Buttons that have a report of their own are silent until one changes. Nothing here pushes, so
+  // they may count as released until then.
+  if (axes && !buttons) reading.buttons_known = ~0u;
   return axes ? Decoded::reading : buttons ? Decoded::status : Decoded::unusable;
 }
 

@@ -18,8 +18,8 @@ template <int M>
   const Eigen::Index p = wide::rows<M>(s.n);
   Four part[4] = {};
   for (Eigen::Index i = 0; i < p; i += 4) {
-    const Four along = four(s.u + i) * s.stiffness + four(s.v + i) * s.along_rate;
-    for (int a = 0; a < 3; ++a) part[a] += four(s.J_T + a * p + i) * along;
+    const Four along = four(s.u + i).v * s.stiffness + four(s.v + i).v * s.along_rate;
+    for (int a = 0; a < 3; ++a) part[a] += four(s.J_T + a * p + i).v * along;
   }
   wide::sums_of(part, force);
 }
@@ -27,9 +27,9 @@ template <int M>
 template <int M>
 [[gnu::always_inline]] inline void take(const WideSubsteps& s) {
   for (Eigen::Index i = 0; i < wide::rows<M>(s.n); i += 4) {
-    four(s.sum_u + i) += four(s.u + i);
-    four(s.u + i) += (four(s.v + i) + four(s.dv + i) * 0.5) * s.h;
-    four(s.v + i) += four(s.dv + i);
+    four(s.sum_u + i).v += four(s.u + i).v;
+    four(s.u + i).v += (four(s.v + i).v + four(s.dv + i).v * 0.5) * s.h;
+    four(s.v + i).v += four(s.dv + i).v;
   }
 }
 
@@ -44,8 +44,8 @@ template <int M>
     const double x = force.x() - moved[0], y = force.y() - moved[1], z = force.z() - moved[2];
     for (Eigen::Index i = 0; i < p; i += 4) {
       const double* const J = s.J_T + i;
-      four(s.dv + i) = (four(s.steady + i) - four(s.damping + i) * four(s.v + i)) +
-                       (four(J) * x + four(J + p) * y + four(J + 2 * p) * z);
+      four(s.dv + i).v = (four(s.steady + i).v - four(s.damping + i).v * four(s.v + i).v) +
+                         (four(J).v * x + four(J + p).v * y + four(J + 2 * p).v * z);
     }
     columns_by_fours(columns<M>(s.n), SolveLower<M>{s.n, s.lower, s.corners, s.dv});
     columns_by_fours_back(columns<M>(s.n), SolveTransposed<M>{s.n, s.lower, s.corners, s.dv});
@@ -66,9 +66,9 @@ template <int M>
   columns_by_fours_back(M, Divide<M, false>{M, turned<M>(s.lower, M), over, E});
   for (Eigen::Index i = 0; i < p; i += 4) {
     for (Eigen::Index c = 0; c < M; ++c) {
-      four(r + i) += four(E + c * p + i) * s.steady[c];
-      for (int a = 0; a < 3; ++a) four(K + a * p + i) += four(E + c * p + i) * s.J_T[a * p + c];
-      four(E + c * p + i) *= s.damping[c];
+      four(r + i).v += four(E + c * p + i).v * s.steady[c];
+      for (int a = 0; a < 3; ++a) four(K + a * p + i).v += four(E + c * p + i).v * s.J_T[a * p + c];
+      four(E + c * p + i).v *= s.damping[c];
     }
   }
   Vec3 force = s.force;
@@ -77,10 +77,10 @@ template <int M>
     hold<M>(s, moved);
     const double x = force.x() - moved[0], y = force.y() - moved[1], z = force.z() - moved[2];
     for (Eigen::Index i = 0; i < p; i += 4) {
-      Four damped = four(E + i) * s.v[0];
-      for (Eigen::Index c = 1; c < M; ++c) damped += four(E + c * p + i) * s.v[c];
-      four(s.dv + i) = (four(r + i) - damped) +
-                       (four(K + i) * x + four(K + p + i) * y + four(K + 2 * p + i) * z);
+      Four damped = four(E + i).v * s.v[0];
+      for (Eigen::Index c = 1; c < M; ++c) damped += four(E + c * p + i).v * s.v[c];
+      four(s.dv + i).v = (four(r + i).v - damped) +
+                         (four(K + i).v * x + four(K + p + i).v * y + four(K + 2 * p + i).v * z);
     }
     take<M>(s);
   }
@@ -94,7 +94,8 @@ template <int M>
     const double x = answer * J_T[c], y = answer * J_T[p + c], z = answer * J_T[2 * p + c];
     for (Eigen::Index i = 0; i < p; i += 4) {
       const double* const J = J_T + i;
-      four(A + i) = four(A + i) * by + (four(J) * x + four(J + p) * y + four(J + 2 * p) * z);
+      four(A + i).v =
+          four(A + i).v * by + (four(J).v * x + four(J + p).v * y + four(J + 2 * p).v * z);
     }
   }
 }

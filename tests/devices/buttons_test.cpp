@@ -25,7 +25,7 @@ TEST(ButtonPresses, CountOnlyAfterTheButtonWasSeenUp) {
   EXPECT_EQ(presses.take(told(0b111)), 0u) << "plugged in again";
 }
 
-TEST(ButtonPresses, CountNoneOfWhichNoReportHasTold) {
+TEST(ButtonPresses, CountNoneThatNoReportHasToldOf) {
   ButtonPresses presses;
   EXPECT_EQ(presses.take({}), 0u) << "before the first report";
   EXPECT_EQ(presses.take(told(0b10)), 0u) << "held since before the first report";

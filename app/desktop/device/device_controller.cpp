@@ -124,9 +124,10 @@ void DeviceController::watch() {
   const Arming before = std::exchange(arming_, snapshot.arming);
   if (live_.loop().device_in_place() && arming_ == Arming::tripped && before != Arming::tripped) {
     const std::string words = device_words(snapshot.reading);
-    notices_.say(fmt::format("Force is off: {}.{}{} Key F switches the force on again.",
-                             explain(snapshot.force_state), words.empty() ? "" : " ", words),
-                 true);
+    notices_.say(
+        fmt::format("Force is off: {}.{}{} After a second, key F switches the force on again.",
+                    explain(snapshot.force_state), words.empty() ? "" : " ", words),
+        true);
   }
   if (!snapshot.connected) {
     problem_ = "not connected";
@@ -246,7 +247,7 @@ void DeviceController::take_turn(const std::string& id) {
   choose();
 }
 
-// A connection under way is not taken: it knows the device as it was.
+// Drops a connection under way, too: it knows the device as it was.
 void DeviceController::connect_anew() {
   save();
   connecting_id_.clear();

@@ -157,7 +157,7 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
           "The list shows the paper's experiments, then the experiments on the predictive law and "
           "on moving objects. Each experiment runs in the ordinary loop, with recorded hand "
           "motions or with motions computed from a fixed seed. Figures, tables, verdicts and all "
-          "trials are saved in the folder %s",
+          "trials are saved in this folder:\n%s",
           experiments_dir().c_str());
       ImGui::Spacing();
       ImGui::TextWrapped(

@@ -374,7 +374,9 @@ void Desktop::toggle_force() {
         true);
   }
   if (live.loop().toggle_force()) return;
-  notices.say("The force switched itself off a moment ago. Press F again to arm the force.", true);
+  notices.say(
+      "The force switched itself off a moment ago. Wait a second, then press F to arm the force.",
+      true);
 }
 
 void Desktop::cut_force() {

@@ -3,6 +3,7 @@
 // The driver here is a stand-in that stands still; put your own into `Driver`.
 #include <limpid/limpid.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -28,8 +29,8 @@ void run(limpid::DeviceLoop& loop, const Driver& driver, const std::atomic<bool>
     reading.position = x;
     reading.hand = driver.hand();
     driver.push(loop.tick(reading));
-    next += milliseconds(1);
-    std::this_thread::sleep_until(next);
+    next = std::max(next + milliseconds(1), steady_clock::now() - milliseconds(5));
+    std::this_thread::sleep_until(next);  // of missed ticks only a few are made up for
   }
   const std::array<double, 3> nothing{};
   driver.push(nothing);

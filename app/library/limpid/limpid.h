@@ -282,8 +282,9 @@ class LIMPID_API DeviceLoop : public Loop {
     bool fault = false;  // True: the device is not well; force trips until it is armed again.
     // Time since the last tick [s]. 0: measured by the library with real motors, one period with
     // simulated ones. More than 5 ms is a stall, after which force fades in anew. A loop that gives
-    // its own time has to measure it, or its stalls are not seen. Not finite or below 0: a fault,
-    // and so are ticks that come more than a tenth faster than `period` says.
+    // its own time has to measure it, or its stalls are not seen. Not finite or below 0: a fault.
+    // Real motors trip where ticks come more than a tenth faster than `period` says; a loop that
+    // makes up for more than 50 ms of ticks it missed does so, too.
     double elapsed = 0;
   };
 
@@ -311,7 +312,7 @@ class LIMPID_API DeviceLoop : public Loop {
   // Why there is no force, or less; empty while all of it is on. "held back" returns by itself, and
   // so does "off" by an open hand switch; "off" by anything else returns after arm(). Of force that
   // is on it also says that it fades in, that the law's account holds walls or all force back, that
-  // a motor gives all it can, and that ticks come faster or slower than `period` says.
+  // a motor gives all it can, and that ticks come at another pace than `period` says.
   std::string force_text() const;
 };
 

@@ -112,6 +112,7 @@ TEST(DeviceStore, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
                 {"limit = {tip_force = 1}", "limit", "a table", "the key \"limits\""},
                 {"tip_force = 1.0", "tip_force", "1", "limits under [device."},
                 {"safety = {tip_force = 1.0}", "safety", "a table", "limits under [device."},
+                {"safety = [{tip_force = 1.0}]", "safety", "[{", "limits under [device."},
                 {"force_limits = {x = 1}", "force_limits", "a table", "limits under [device."},
                 {"\"limits.tip_force\" = 1.0", "limits.tip_force", "1", "limits under [device."},
                 {"compensation = {tip_force = 1}", "compensation.tip_force", "1", "limits under"},
@@ -139,7 +140,9 @@ TEST(DeviceStore, RefusesEverythingWhereTheFileItselfCannotBeUnderstood) {
   for (const char* text :
        {"in_use = \n", "in_use = 7\n", "device = 3\n", "[device.a]\nchecked = true\n[device.a]\n",
         "[device.a]\n[devices.a.limits]\ntip_force = 1\n", "[limits]\ntip_force = 1\n",
-        "tip_force = 1\n", "[safety]\nforce = 1\n", "\xff\xfe"}) {
+        "tip_force = 1\n", "[safety]\nforce = 1\n", "[device.limits]\ntip_force = 1\n",
+        "[device]\ntip_force = 1\n", "[device]\nchecked = true\n",
+        "[device.a]\n[[device.axis]]\nscale = 2\n", "\xff\xfe"}) {
     std::ofstream(file) << text;
     const DeviceStore store = load_device_store(file);
     EXPECT_THAT(store.refusal, testing::StartsWith(file.string() + ":")) << text;

@@ -304,10 +304,14 @@ TEST(DeviceLoop, TripsWhereTicksComeFasterThanThePeriod) {
     DeviceLoop loop(options, std::array{0.0});
     loop.arm();
     const auto [most, why] = paced(loop, elapsed, 1.5);
-    EXPECT_LT(most, 1) << elapsed << " s";
+    if (elapsed < 8e-4) {
+      EXPECT_LT(most, 1) << elapsed << " s: before all of it is there";
+    }
     EXPECT_EQ(loop.force_share(), 0);
     EXPECT_THAT(why, AllOf(StartsWith("force off: ticks come"), HasSubstr("not every 1 ms")));
-    EXPECT_EQ(paced(loop, 1e-3, 2).first, 0) << "until it is armed again";
+    const auto [later, still] = paced(loop, 1e-3, 2);
+    EXPECT_EQ(later, 0) << "until it is armed again";
+    EXPECT_EQ(still, why) << "the pace at which it tripped";
     loop.arm();
     EXPECT_EQ(paced(loop, 1e-3, 1).first, 1);
     EXPECT_EQ(loop.force_text(), "");

@@ -548,7 +548,6 @@ TEST(LiveLoop, StopsADeviceThatIsReplaced) {
   EXPECT_TRUE(stopped[0]);
 }
 
-// A person who presses just after a trip wanted to switch the force off.
 TEST(LiveLoop, TakesAPressAfterATripForNone) {
   const auto wire = std::make_shared<test::Wire>();
   LiveLoop loop({});
@@ -579,7 +578,6 @@ TEST(LiveLoop, TakesAPressAfterATripForNone) {
   EXPECT_TRUE(until(Arming::on));
 }
 
-// Another thread closes a device, perhaps seconds later.
 TEST(LiveLoop, StopsItsDeviceBeforeItHandsItOver) {
   std::vector<bool> stopped;
   LiveLoop loop({}, [&](std::unique_ptr<Device> device) {

@@ -252,6 +252,7 @@ TEST_F(Served, TakesAButtonForNothingThatIsHeldBeforeTheFirstReport) {
   const auto wire = std::make_shared<test::Wire>();
   wire->buttons_known = 0;
   serve(world(), std::make_unique<test::WiredDevice>(3, wire));
+  ASSERT_TRUE(until([&] { return state()["ticks"] > 50; }));
   for (int i = 0; i < 30; ++i) turn();
   wire->buttons = 2;
   wire->buttons_known = ~0u;

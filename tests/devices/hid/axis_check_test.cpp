@@ -119,8 +119,8 @@ TEST(AxisCheck, BeginsAPushAgainFromNothingAfterAStall) {
     ASSERT_FALSE(check.done());
   }
   EXPECT_EQ(check.stage(), AxisStage::pushing);
-  EXPECT_EQ(check.step({springs.x, 0.1, true, true})[0], 0);
-  EXPECT_EQ(check.stage(), AxisStage::resting);
+  EXPECT_EQ(check.step({springs.x, 0.5, true, true})[0], 0);
+  EXPECT_EQ(check.stage(), AxisStage::resting) << "a rest is as long as ever";
   double before = 0, steepest = 0;
   while (!check.done() && springs.time < 100) {
     springs.tick(check);
@@ -129,6 +129,18 @@ TEST(AxisCheck, BeginsAPushAgainFromNothingAfterAStall) {
   }
   EXPECT_LE(steepest, 0.2 * 1e-3 / 0.5 + 1e-12);
   EXPECT_TRUE(check.passed());
+}
+
+// A device that reports a lapse with each reading has no force of its own.
+TEST(AxisCheck, EndsWhereEachPushIsInterrupted) {
+  AxisCheck check(traits(1));
+  const std::vector<double> x{0.0};
+  int ticks = 0;
+  for (; !check.done() && ticks < 10000; ++ticks) {
+    EXPECT_EQ(check.step({x, 1e-3, true, true})[0], 0);
+  }
+  EXPECT_TRUE(check.done());
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::stalled);
 }
 
 TEST(AxisCheck, IsWithoutTorqueOnceCancelled) {
