@@ -1,15 +1,14 @@
 #include "app/remote/served_session.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "app/base/dated_file.h"
 #include "app/device/device_store.h"
 #include "app/remote/remote_settings.h"
 #include "app/run/lane_settings.h"
@@ -221,8 +220,7 @@ Answer ServedSession::record(const Keys& keys) {
     file = keys.file(".h5");
   } else {
     fs::create_directories(options_.folder);
-    file = options_.folder /
-           fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
+    file = dated_file(options_.folder, "session", "h5");
   }
   RunPlan plan;
   plan.arm = world_.plan.arm;

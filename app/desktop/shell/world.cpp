@@ -1,15 +1,14 @@
 #include "app/desktop/shell/world.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <functional>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
+#include "app/base/dated_file.h"
 #include "app/base/folders.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/run/fitted_gains.h"
@@ -532,10 +531,7 @@ void World::record(const fs::path& file, bool replaces) {
 
 void World::start_recording(fs::path file, bool replaces) {
   d_.playback.close();
-  if (file.empty()) {
-    file = sessions_dir() /
-           fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
-  }
+  if (file.empty()) file = dated_file(sessions_dir(), "session", "h5");
   RunPlan plan;
   plan.arm = d_.live.stage().arm();
   plan.document = d_.document.editor().document();

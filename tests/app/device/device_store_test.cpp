@@ -112,7 +112,7 @@ TEST(DeviceStore, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
                 {"limit = {tip_force = 1}", "limit", "a table", "the key \"limits\""},
                 {"tip_force = 1.0", "tip_force", "1", "limits under [device."},
                 {"safety = {tip_force = 1.0}", "safety", "a table", "limits under [device."},
-                {"safety = [{tip_force = 1.0}]", "safety", "[{", "limits under [device."},
+                {"safety = [{tip_force = 1.0}]", "safety", "[a table]", "limits under [device."},
                 {"force_limits = {x = 1}", "force_limits", "a table", "limits under [device."},
                 {"\"limits.tip_force\" = 1.0", "limits.tip_force", "1", "limits under [device."},
                 {"compensation = {tip_force = 1}", "compensation.tip_force", "1", "limits under"},

@@ -19,7 +19,6 @@ TEST_F(ADesktop, RecordsAndClosesTheFileBesideTheWindow) {
     desktop->world.toggle_recording();
     ASSERT_TRUE(until([&] { return said("Recorded"); }));
     desktop->notices.clear();
-    std::this_thread::sleep_for(1100ms);  // file names have seconds
   }
   ASSERT_EQ(recordings().size(), 2u);
   for (const fs::path& file : recordings()) EXPECT_GT(read_session(file).size(), 100u);
