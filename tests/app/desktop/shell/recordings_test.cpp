@@ -107,7 +107,7 @@ TEST_F(ADesktop, SaysThatALeftoverHasNothingToRecover) {
   plan.arm = test::omni();
   plan.hand.source = "mouse";
   // The recording is never finished.
-  Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);
+  { const Recorder cut(sessions / "cut.h5", session_info(plan), Parameters{}, false); }
   desktop->playback.recover_leftovers(sessions);
   EXPECT_TRUE(said("nothing was recorded"));
   EXPECT_FALSE(fs::exists(sessions / "cut.h5"));
@@ -155,7 +155,7 @@ TEST_F(ADesktop, KeepsAMarkInTheRecordingAtTheTimeThatThePlotsShow) {
 TEST_F(ADesktop, CountsTheMarksOfEachRecordingAnew) {
   const auto mark = [&] {
     desktop->marking.begin();
-    const std::string offered = desktop->marking.text();
+    std::string offered = desktop->marking.text();
     desktop->marking.accept(offered);
     frames(3);
     return offered;
