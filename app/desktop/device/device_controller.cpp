@@ -143,6 +143,11 @@ void DeviceController::watch() {
   if ((pressed & 2) != 0) requests_.second_button();
 }
 
+// Without an id nothing under way is wanted, even if no device is chosen.
+bool DeviceController::still_wanted() const {
+  return !connecting_id_.empty() && connecting_id_ == hub_.in_use();
+}
+
 void DeviceController::connect() {
   problem_ = "connecting";
   connecting_id_ = hub_.in_use();
@@ -153,7 +158,7 @@ void DeviceController::take_connected() {
   try {
     auto ready = take_ready(connecting_);
     if (!ready) return;
-    if (connecting_id_ != hub_.in_use() || must_wait()) {  // not wanted any more
+    if (!still_wanted() || must_wait()) {
       return live_.let_go(std::move(*ready));
     }
     const DeviceTraits traits = (*ready)->traits();
@@ -205,7 +210,7 @@ void DeviceController::follow_check() {
   progress_->see_window();
   try {
     const auto check = take_ready(check_);
-    if (!check || connecting_id_ != hub_.in_use()) return;
+    if (!check || !still_wanted()) return;
     problem_ = report_of(*check, progress_->end);
     check_failed_ = !check->passed();
     if (!remember_check(*check, hub_.notes(hub_.in_use()))) {

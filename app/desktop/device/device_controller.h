@@ -86,6 +86,7 @@ class DeviceController {
   void look();
   void say_what_came();
   void connect();
+  bool still_wanted() const;  // the connection or check under way
   void take_connected();
   void watch();
   void follow_check();
