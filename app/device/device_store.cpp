@@ -164,7 +164,10 @@ const toml::table* devices_in(const toml::table& store, const fs::path& file) {
   devices.refuse_strays(
       {},
       [](std::string_view key, const toml::node& each) {
-        return names_a_limit(key) || key == "axis" || key == "compensation" || !each.is_table();
+        const bool is_limit =
+            std::ranges::any_of(kSafetyLimits, [&](const auto& limit) { return key == limit.key; });
+        return is_limit || key == "limits" || key == "axis" || key == "compensation" ||
+               !each.is_table();
       },
       "a table for each device, [device.\"ID\"]");
   return node->as_table();

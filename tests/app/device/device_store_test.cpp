@@ -154,6 +154,16 @@ TEST(DeviceStore, RefusesEverythingWhereTheFileItselfCannotBeUnderstood) {
   EXPECT_EQ(load_device_store(dir / "none.toml").complaint(), "") << "a first start";
 }
 
+TEST(DeviceStore, TakesADeviceWhoseIdHasTheWordsOfALimit) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  std::ofstream(file) << "[device.\"socket:long_range\"]\nchecked = true\n"
+                         "[device.\"socket:no_limit\"]\nchecked = true\n";
+  const DeviceStore store = load_device_store(file);
+  EXPECT_EQ(store.complaint(), "");
+  EXPECT_TRUE(store.notes.at("socket:long_range").checked);
+}
+
 TEST(DeviceStore, IsNeverWrittenOverWhereItCannotBeUnderstood) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
