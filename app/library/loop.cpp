@@ -450,7 +450,7 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   const bool timed = std::isfinite(reading.elapsed) && reading.elapsed >= 0;
   double elapsed = timed ? reading.elapsed : 0;
   if (elapsed == 0 && s.real && s.ticks > 0) elapsed = seconds_between(s.before, now);
-  if (s.real && s.ticks > 0) s.measure(elapsed);
+  if (elapsed > 0 && s.ticks > 0) s.measure(elapsed);
   s.before = now;
   const bool fresh = reading.fresh || !s.real;
   const bool whole = s.device->whole(reading.position, fresh);
@@ -463,7 +463,7 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   if (wrong) s.device->stop();
   if (wrong && !s.real) return s.device->torque();  // a simulated device cannot trip
   const double passed = elapsed > 0 ? elapsed : T;
-  const bool early = s.lead > State::kMostLead;
+  const bool early = s.real && s.lead > State::kMostLead;
   s.device->take(reading.position, fresh, reading.hand, reading.fault || !timed || early, passed);
   RigInput input{{s.tip(), 1}, s.force.take()};
   constexpr double kMostPeriods = 1e6;
@@ -479,7 +479,9 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
 void DeviceLoop::arm() noexcept { state_->force.arm(); }
 void DeviceLoop::cut() noexcept { state_->force.cut(); }
 bool DeviceLoop::armed() const noexcept { return state_->rig->force().armed(); }
-double DeviceLoop::force_share() const noexcept { return state_->rig->force().gain(); }
+double DeviceLoop::force_share() const noexcept {
+  return state_->refused != nullptr ? 0 : state_->rig->force().gain();
+}
 std::string DeviceLoop::force_text() const {
   const State& s = *state_;
   if (s.wrong_count > 0) {

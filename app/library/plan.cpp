@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "app/base/folders.h"
 #include "app/run/fitted_gains.h"
@@ -56,13 +57,22 @@ SceneDocument read_scene_of(const LoopOptions& options, const ArmDescription& ar
 }
 
 Parameters chosen(const LoopOptions& options, Parameters base) {
-  if (!options.config.empty()) apply_config(base, options.config);
+  if (!options.config.empty()) {
+    const double before = std::exchange(base.tick, kFromArm);
+    apply_config(base, options.config);
+    if (!std::isnan(base.tick) && base.tick != options.period) {
+      throw FieldError(fmt::format("{}: loop.tick: {} s differs from the option `period`, {} s",
+                                   options.config, base.tick, options.period));
+    }
+    base.tick = before;
+  }
   for (const std::string& setting : options.settings) {
     setting_named(key_of_setting(setting));
     apply_setting(base, setting);
   }
   if (base.tick != Parameters{}.tick && base.tick != options.period) {
-    throw FieldError("loop.tick: is set here by the option `period`");
+    throw FieldError(fmt::format("loop.tick: {} s differs from the option `period`, {} s",
+                                 base.tick, options.period));
   }
   const ParameterInfo& tick = setting_named("loop.tick");
   if (!(options.period >= tick.minimum && options.period <= tick.maximum)) {
@@ -168,7 +178,7 @@ HandPath hand_of_rows(std::span<const double> rows) {
     time.push_back(t);
     position.push_back(point);
   }
-  return hand_through(std::move(time), std::move(position), "library");
+  return hand_through(std::move(time), std::move(position), "path");
 }
 
 SafetyLimits limits_of(const LoopLimits& wanted) {
@@ -190,7 +200,9 @@ const ParameterInfo& setting_named(std::string_view key) {
   if (const ParameterInfo* const info = find_parameter(key)) return *info;
   std::vector<std::string> keys;
   for (const ParameterInfo& each : parameter_table()) keys.emplace_back(each.key);
-  throw FieldError(fmt::format("{}: no such key; {}", key, meant_or(key, keys, "setting_list()")));
+  throw FieldError(
+      fmt::format("{}: no such key; {}", key,
+                  meant_or(key, keys, "setting_list(), in Python limpid.settings(),")));
 }
 
 void set_live(Parameters& p, const std::string& key_value, LoopArm of) {

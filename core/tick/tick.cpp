@@ -237,9 +237,11 @@ void Tick<N>::switch_law(CouplingKind to, const Vec<N>& x1) {
 template <int N>
 void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wish, double put_out,
                       double T) {
-  const Objections against = safety_.judge(
-      in.health, diverged_, {in.measured, velocity_.estimate(), J_, tau1_, put_out, T});
-  // The time that really passed, at most a tick's.
+  // The time that really passed; the estimate reckons with whole ticks.
+  const double passed = in.dt > 0 && !in.health.gap ? in.dt : T;
+  const Vec<N> v = T / passed * velocity_.estimate();
+  const Objections against =
+      safety_.judge(in.health, diverged_, {in.measured, v, J_, tau1_, put_out, passed});
   const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
   gate_.step(wish, against, dt);
   const bool barred = against.fault != ForceState::on || !(against.ceiling > 0);

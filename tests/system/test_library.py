@@ -196,7 +196,36 @@ for wrong in (lambda: limpid.Loop(scene="no.toml"), lambda: limpid.Loop(eta=-1),
         raise AssertionError("refused nothing")
 assert loop.get("coupling.eta") == 0.5, "all settings or none"
 assert "place" not in row and row.get("place", 0) == 0 and "device/position" in row
+# Whatever a device's driver gives for no reading ends the force of real motors, and raises nothing.
+for wrong in ([0, -0.8], [0, -0.8, 1.5, 0], None, "ab", [0, 0, "x"], [[0, 0, 0]] * 3, [0, float("nan"), 1.5]):
+    real = limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", coupling="standard")
+    real.arm()
+    for k in range(700):
+        pushed = real.tick([1e-5 * min(k, 500), -0.8, 1.5], elapsed=0.001)
+    assert real.force_share == 1 and numpy.abs(pushed).max() > 0, (real.force_text, pushed)
+    assert list(real.tick(wrong, elapsed=0.001)) == [0, 0, 0], wrong
+    assert real.force_share == 0 and real.force_text, wrong
+    assert list(real.tick([0.005, -0.8, 1.5], elapsed=0.001)) == [0, 0, 0], wrong
+real = limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf")
+for late in (float("nan"), -1, "soon", None):
+    assert list(real.tick([0, -0.8, 1.5], elapsed=late)) == [0, 0, 0]
+assert list(real.tick([], fresh=False)) == [0, 0, 0]
 simulated = limpid.DeviceLoop([0, -0.8, 1.5], motors="simulated")
+for wrong in (lambda: setattr(loop, "eta", 0.3), lambda: __import__("pickle").dumps(loop), lambda: loop.get(3),
+              lambda: simulated.tick([0, -0.8, 1.5], elapsed=float("nan")), lambda: loop.step((10**400, 0, 0)),
+              lambda: loop.run([(0, *loop.tip), (1, *loop.tip)], duration=1e12), lambda: limpid.Arm("a", joints=[3]),
+              lambda: limpid.Arm(3), lambda: limpid.Arm("a", tip=3), lambda: limpid.Arm("a", joints=[{"slides": "no"}]),
+              lambda: limpid.Arm("a", joints=[{"mass": 1, "inertia": (1,) * 7}]), lambda: limpid.Scene(title="\ud800").text(),
+              lambda: setattr(limpid.Scene(), "gravity", (0, 0, 0)), lambda: limpid.Loop(coupling__per_joints=True)):
+    try:
+        wrong()
+    except limpid.LimpidError as error:
+        assert str(error)
+    else:
+        raise AssertionError("refused nothing")
+scene = limpid.Scene()
+scene.add("plane", "floor", point=(0, 0, 0), normal=(0, 0, 1))
+assert "floor" in scene and "wall" not in scene
 for wrong in ("ab", [0, 0], None, [0, 0, "x"]):
     try:
         simulated.tick(wrong)

@@ -94,7 +94,8 @@ struct LoopOptions {
   // The scene as text, in place of the file; SceneBuilder below writes one. Models that it names
   // are looked for in the present folder.
   std::string scene_text;
-  // TOML file of settings, as `limpid run --config` takes it. Empty: none.
+  // TOML file of settings, as `limpid run --config` takes it; if it has loop.tick, it has to be
+  // `period`. Empty: none.
   std::string config;
   // Settings by their keys, as "coupling.kind=predictive"; later ones win, also over `config`.
   // setting_list() has all of them. The law is "proposed", the paper's, unless coupling.kind says
@@ -249,11 +250,11 @@ class LIMPID_API Loop {
   // True once the loop was unstable: force is off, and stays off.
   bool diverged() const noexcept;
 
-  // Records every row from the coming tick on into a session, an HDF5 file (.h5). While force fades
-  // in, recording waits for the end of the fade: what begins and ends within it has no rows. A
-  // thread of its own writes. With simulated motors a tick waits where the disk is slower; with
-  // real ones rows that find no room are lost, and counted. Errors: the file exists and not
-  // `replace`; it cannot be written.
+  // Records every row from the coming tick on into a session, an HDF5 file (.h5). A recording that
+  // is begun while force fades in waits for the end of the fade; one that runs goes on. A thread of
+  // its own writes. With simulated motors a tick waits where the disk is slower; with real ones
+  // rows that find no room are lost, and counted. Errors: the file exists and not `replace`; it
+  // cannot be written.
   void record(const std::string& file, bool replace = false);
   // Ends the recording and returns the number of lost rows. Without it FILE.part is left, which
   // `limpid recover` mends. Errors: a write failed; nothing was being recorded.
@@ -283,6 +284,8 @@ class LIMPID_API DeviceLoop : public Loop {
     // Time since the last tick [s]. 0: measured by the library with real motors, one period with
     // simulated ones. More than 5 ms is a stall, after which force fades in anew. A loop that gives
     // its own time has to measure it, or its stalls are not seen. Not finite or below 0: a fault.
+    // Law and row count the nearest number of whole periods, at least one; limits of speed and
+    // energy count the time itself.
     // Real motors trip where ticks come more than a tenth faster than `period` says; a loop that
     // makes up for more than 50 ms of ticks it missed does so, too.
     double elapsed = 0;

@@ -46,8 +46,11 @@ def stream(name: str, target: str, channels: List[str], rate: float) -> None:
     host, _, port = target.rpartition(":")
     if not port.isdigit() or not 0 < int(port) < 65536:
         raise limpid.ArgumentError(f"{target} is no place to send to; needed: HOST:PORT, as localhost:9870")
-    address = (host or "localhost", int(port))
-    with limpid.connect(name) as loop, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host.strip("[]") or "localhost", int(port), type=socket.SOCK_DGRAM)[0]
+    except OSError as error:
+        raise limpid.LimpidError(f"{target}: no such host: {error.strerror}") from error
+    with limpid.connect(name) as loop, socket.socket(family, socket.SOCK_DGRAM) as out:
         names = channels or CHANNELS
         tick = float(loop.get("loop.tick")["loop.tick"])
         loop.follow(names, rate=rate)
@@ -66,7 +69,8 @@ def main() -> int:
     verbs = parser.add_subparsers(dest="verb", required=True)
     shown = verbs.add_parser("demo", help="lead a loop for five seconds and say what happens")
     shown.add_argument("--window", action="store_true", help="in a window")
-    sent = verbs.add_parser("stream", help="send rows of a running program over UDP, for PlotJuggler")
+    sent = verbs.add_parser("stream", help="send rows of a running program over UDP, for PlotJuggler; the field "
+                           "of the time is `time`")
     sent.add_argument("target", metavar="HOST:PORT", help="PlotJuggler's UDP server has port 9870")
     sent.add_argument("channels", nargs="*", metavar="CHANNEL", help=f"default: {', '.join(CHANNELS)}")
     sent.add_argument("--name", default="control", help="of the program, as limpid --listen NAME; default: control")

@@ -21,7 +21,7 @@ from typing import IO, Any, Deque, Dict, List, Mapping, NamedTuple, Optional, Se
 from limpid.errors import ArgumentError, LimpidError, ProgramError, RecordingError, RequestError
 from limpid.program import find_program, setting_words
 from limpid.runs import hand_file
-from limpid.values import Hand, PathLike, names_of, number, path_of, plain, settings_of
+from limpid.values import SHORT, Hand, PathLike, names_of, number, path_of, plain, settings_of
 
 PROTOCOL = 1
 KEPT_MESSAGES = 10_000  # of rows that nobody has fetched; older ones are dropped and counted
@@ -99,7 +99,7 @@ class Client:
 
     def get(self, *keys: str) -> Dict[str, Any]:
         """The values of these settings, or of all; None stands for what is left to the arm."""
-        asked = {"keys": names_of("keys", keys)} if keys else {}
+        asked = {"keys": [SHORT.get(key, key) for key in names_of("keys", keys)]} if keys else {}
         return dict(self.request("get", **asked)["values"])
 
     def state(self) -> Dict[str, Any]:

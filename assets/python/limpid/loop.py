@@ -137,8 +137,16 @@ class _AnyLoop:
         """Whether the loop was unstable: its force is off, and stays off."""
         return bool(self._loop.diverged)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in ("units", "about") and not name.startswith("_"):
+            raise ArgumentError(f"{name}: cannot be assigned to; settings change by loop.set({name}=...)")
+        super().__setattr__(name, value)
+
     def __copy__(self) -> Any:
-        raise ArgumentError("a loop cannot be copied; make another one")
+        raise ArgumentError("a loop cannot be copied, nor sent to another process; make another one there")
+
+    def __reduce__(self) -> Any:
+        return self.__copy__()
 
     def __deepcopy__(self, memo: Any) -> Any:
         return self.__copy__()
@@ -169,6 +177,8 @@ class _AnyLoop:
 
     def get(self, key: str) -> Value:
         """A setting's present value; of a choice its word."""
+        if not isinstance(key, str):
+            raise ArgumentError(f"{key!s:.40} is no key; allowed: a text such as coupling.eta")
         whole = next(iter(settings_of({}, {key.replace(".", "__"): 0})))
         words = next((each.words for each in settings() if each.key == whole), [])
         found = self._loop.get(whole)
@@ -178,7 +188,7 @@ class _AnyLoop:
 
     def record(self, file: PathLike, force: bool = False) -> None:
         """Records every row from the next tick on into a session, in place of one that is there with
-        `force`."""
+        `force`. Called while the force of real motors fades in, it begins at the fade's end."""
         try:
             self._loop.record(path_of("record", file), force)
         except LimpidError as error:
@@ -244,7 +254,11 @@ class Loop(_AnyLoop):
                 offset, width = self._places[name]
                 places[name] = (len(kept), width)
                 kept += range(offset, offset + width)
-        values, _, why, said = self._loop.run(hand_array(hand), seconds, kept)
+        try:
+            values, _, why, said = self._loop.run(hand_array(hand), seconds, kept)
+        except MemoryError as error:
+            raise LimpidError(f"run: rows of {len(kept)} numbers for so long do not fit into memory; "
+                              "`channels` keeps fewer of them") from error  # fmt: skip
         for warning in [why] * bool(why) + said:
             warnings.warn(warning, RunWarning, stacklevel=2)
         return Run(values, places, why, said)
@@ -273,6 +287,7 @@ class DeviceLoop(_AnyLoop):
         if motors not in ("real", "simulated"):
             raise ArgumentError(f'motors: {motors!r} is not allowed; allowed: "real", "simulated"')
         options.motors = getattr(_module().Motors, motors)
+        self._real = motors == "real"
         allowed = options.limits
         if not isinstance(limits, (Mapping, type(None))):
             raise ArgumentError(f"limits: {limits!s:.40} is not allowed; allowed: a dict of names and numbers")
@@ -287,15 +302,21 @@ class DeviceLoop(_AnyLoop):
     def tick(self, position: Sequence[float], fresh: bool = True, hand: bool = True,
              fault: bool = False, elapsed: float = 0) -> "numpy.ndarray":  # fmt: skip
         """Runs the tick on a reading of each joint; returns the torques to be held until the next
-        one. `fresh`: not the same reading as at the last tick. `hand`: the dead-man switch is closed.
-        `fault`: the device is not well. `elapsed`: time since the last tick [s]; 0: measured here."""
-        seconds = elapsed if type(elapsed) in (int, float) and 0 <= elapsed < math.inf else _seconds("elapsed", elapsed)
+        one. `fresh`: not the same reading as at the last tick; one that is not may be empty. `hand`: the
+        dead-man switch is closed. `fault`: the device is not well. `elapsed`: time since the last tick
+        [s]; 0: measured here. With real motors whatever is no reading trips the force and returns
+        zeros, and `force_text` says it; with simulated ones it raises ArgumentError."""
         try:
-            count = len(position)
-            if count == self.joints:
-                return self._loop.tick(position, bool(fresh), bool(hand), bool(fault), seconds)
-        except TypeError as error:
-            raise ArgumentError(f"position: {position!s:.60} is not allowed; allowed: a number for each joint") from error
+            if self._real or len(position) == self.joints and 0 <= elapsed < math.inf:
+                return self._loop.tick(position, bool(fresh), bool(hand), bool(fault), elapsed)
+        except TypeError:
+            if self._real:
+                return self._loop.tick((), True, bool(hand), True, 0)
+        if not isinstance(elapsed, (int, float)) or not 0 <= elapsed < math.inf:
+            _seconds("elapsed", elapsed)
+        count = len(_listed("position", position))
+        if count == self.joints:
+            raise ArgumentError(f"position: {position!s:.60} is not allowed; allowed: a number for each joint")
         raise ArgumentError(f"position: has {count} numbers; needed: {self.joints}, one a joint")
 
     def arm(self) -> None:

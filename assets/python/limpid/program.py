@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import subprocess
@@ -38,9 +39,14 @@ def assets(name: str, kind: str) -> str:
     """The file of that name, or the one of that name that came along with the program."""
     if os.path.exists(name) or os.path.dirname(name):
         return name
-    program = os.path.realpath(find_program())
-    for folder in Path(program).parents:
-        own = folder / "share/limpid/assets" / kind / name
+    # Beside this package, as `pip install` puts them, or as they are in a source tree.
+    here = Path(__file__).resolve()
+    folders = [folder / "share/limpid/assets" for folder in here.parents] + [here.parents[2]]
+    with contextlib.suppress(ProgramError):
+        program = os.path.realpath(find_program())
+        folders = [folder / "share/limpid/assets" for folder in Path(program).parents] + folders
+    for folder in folders:
+        own = folder / kind / name
         if own.is_file():
             return str(own)
     return name

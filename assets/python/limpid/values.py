@@ -51,10 +51,13 @@ def plain(name: str, value: Any) -> Value:
 
 def number(name: str, value: Any) -> float:
     """The same of what has to be a number."""
-    found = plain(name, value)
-    if isinstance(found, str):
-        raise ArgumentError(f'{name}: "{found}" is not allowed; allowed: a finite number')
-    return float(found)
+    try:
+        found = plain(name, value)
+        if not isinstance(found, str):
+            return float(found)
+    except (ArgumentError, OverflowError):
+        pass
+    raise ArgumentError(f"{name}: {_shown(value)} is not allowed; allowed: a finite number")
 
 
 def whole(name: str, value: Any) -> int:

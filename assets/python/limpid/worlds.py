@@ -32,6 +32,11 @@ class Scene:
         self.values: Dict[str, Any] = dict(values)
         self.objects: List[Dict[str, Any]] = []  # in their order, each with its "kind"
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in ("values", "objects"):
+            raise ArgumentError(f"{name}: cannot be assigned to; scene.values[{name!r}] has what stands before all objects")
+        super().__setattr__(name, value)
+
     @classmethod
     def read(cls, file: PathLike) -> "Scene":
         """The scene of a file, or of one that came along ("table.toml"). Raises LimpidError."""
@@ -69,6 +74,9 @@ class Scene:
     def __delitem__(self, name: str) -> None:
         self.objects.remove(self[name])
 
+    def __contains__(self, name: object) -> bool:
+        return any(each is name or each.get("name") == name for each in self.objects)
+
     def __iter__(self) -> Iterator[Dict[str, Any]]:
         return iter(self.objects)
 
@@ -94,6 +102,10 @@ class Scene:
         _write(path_of("scene", file), self.text(), force)
 
 
+JOINT_KEYS = ("name", "slides", "position", "rpy", "axis", "lower", "upper", "effort", "damping", "friction", "mass",
+              "center", "inertia")  # fmt: skip
+
+
 class Arm:
     """An arm as URDF: built of joints, or read and changed.
 
@@ -107,10 +119,12 @@ class Arm:
         """`joints`, base first, each a dict: name; slides (False); position, rpy: its origin in the
         frame of the joint before; axis (0, 0, 1); lower, upper, effort, damping, friction; mass,
         center, inertia (xx, xy, xz, yy, yz, zz) of the link that it moves. `tip` in the last frame."""
-        self._root = xml.Element("robot", name=name)
+        self._root = xml.Element("robot", name=_text("name", name))
         xml.SubElement(self._root, "link", name="base")
         parent = "base"
-        for given in joints:
+        for given in _all("joints", joints):
+            if not isinstance(given, Mapping):
+                raise ArgumentError(f"joints: {given!s:.40} is not allowed; allowed: a dict for each joint")
             parent = self._add(dict(given), parent)
         end = xml.SubElement(self._root, "joint", name="to_tip", type="fixed")
         xml.SubElement(end, "origin", xyz=_numbers("tip", tip))
@@ -119,10 +133,13 @@ class Arm:
         xml.SubElement(self._root, "link", name="tip")
 
     def _add(self, given: Dict[str, Any], parent: str) -> str:
-        name = str(given.pop("name", f"joint_{len(self.joints) + 1}"))
+        name = _text("name", given.pop("name", f"joint_{len(self.joints) + 1}"))
         link = f"{name}_link"
+        slides = given.pop("slides", False)
+        if slides not in (True, False) or isinstance(slides, str):
+            raise ArgumentError(f"joint {name}: slides {slides!s:.40} is not allowed; allowed: True or False")
         joint = xml.SubElement(self._root, "joint", name=name,
-                               type="prismatic" if given.pop("slides", False) else "revolute")  # fmt: skip
+                               type="prismatic" if slides else "revolute")  # fmt: skip
         xml.SubElement(joint, "origin", xyz=_numbers("position", given.pop("position", (0, 0, 0))),
                        rpy=_numbers("rpy", given.pop("rpy", (0, 0, 0))))  # fmt: skip
         xml.SubElement(joint, "parent", link=parent)
@@ -141,13 +158,14 @@ class Arm:
         mass, center = given.pop("mass", 0), given.pop("center", (0, 0, 0))
         inertia = given.pop("inertia", (0,) * 6)
         if given:
-            raise ArgumentError(f"joint {name}: {', '.join(given)} is none of its keys")
+            raise ArgumentError(f"joint {name}: {', '.join(map(str, given))} is none of its keys; "
+                                f"there are {', '.join(JOINT_KEYS)}")  # fmt: skip
         if mass:
             inertial = xml.SubElement(moved, "inertial")
             xml.SubElement(inertial, "origin", xyz=_numbers("center", center))
             xml.SubElement(inertial, "mass", value=_number("mass", mass))
-            parts = zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), inertia)
-            xml.SubElement(inertial, "inertia", {key: _number("inertia", value) for key, value in parts})
+            parts = _numbers("inertia", inertia, 6).split()
+            xml.SubElement(inertial, "inertia", dict(zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), parts)))
         return link
 
     @classmethod
@@ -220,8 +238,24 @@ def _number(name: str, value: Any) -> str:
         raise ArgumentError(f"{name}: {value!s:.40} is not allowed; allowed: a number") from error
 
 
-def _numbers(name: str, values: Iterable[Any]) -> str:
-    return " ".join(_number(name, each) for each in values)
+def _numbers(name: str, values: Iterable[Any], count: int = 3) -> str:
+    found = _all(name, values)
+    if len(found) != count:
+        raise ArgumentError(f"{name}: has {len(found)} numbers; needed: {count}")
+    return " ".join(_number(name, each) for each in found)
+
+
+def _all(name: str, values: Any) -> List[Any]:
+    if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
+        raise ArgumentError(f"{name}: {values!s:.40} is not allowed; allowed: a list")
+    return list(values)
+
+
+def _text(name: str, value: Any) -> str:
+    """A text that a file can hold."""
+    if isinstance(value, str) and not any("\ud800" <= letter <= "\udfff" for letter in value):
+        return str(value)
+    raise ArgumentError(f"{name}: {value!a:.40} is not allowed; allowed: a text")
 
 
 def _toml(key: str, value: Any) -> str:
@@ -233,7 +267,7 @@ def _toml(key: str, value: Any) -> str:
     if isinstance(value, (int, float)):
         return repr(value)
     if isinstance(value, str):
-        escaped = "".join(f"\\u{ord(c):04x}" if c in '"\\' or ord(c) < 32 else c for c in value)
+        escaped = "".join(f"\\u{ord(c):04x}" if c in '"\\' or ord(c) < 32 else c for c in _text(key, value))
         return f'"{escaped}"'
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{name} = {_toml(name, each)}" for name, each in value.items()) + "}"

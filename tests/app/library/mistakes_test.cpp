@@ -164,6 +164,19 @@ TEST(Loops, SayWhatIsNotAllowed) {
               }),
               HasSubstr("real motors; allowed: at most 0.004 s"));
   EXPECT_THAT(making([](auto& o) { o.settings = {"loop.tick=0.002"}; }), HasSubstr("period"));
+  const test::TempDir dir;
+  for (const char* tick : {"0.002", "0.001"}) {
+    std::ofstream(dir / "own.toml") << "[loop]\ntick = " << tick << '\n';
+    const auto with_period = [&](double period) {
+      return making([&](auto& o) {
+        o.config = (dir / "own.toml").string();
+        o.period = period;
+      });
+    };
+    EXPECT_EQ(with_period(std::stod(tick)), "nothing");
+    EXPECT_THAT(with_period(0.0005), AllOf(HasSubstr("own.toml: loop.tick: "), HasSubstr(tick),
+                                           HasSubstr("`period`, 0.0005")));
+  }
   EXPECT_THAT(making([](auto& o) { o.scene_text += "[[ball]]\n"; }), HasSubstr("scene_text:"));
   EXPECT_THAT(making([](auto& o) { o.scene = "table.toml"; }), HasSubstr("both given"));
   EXPECT_THAT(making([](auto& o) {
@@ -271,6 +284,7 @@ TEST(DeviceLoop, SaysThatAReadingOfASimulationIsNotFinite) {
   reading.position = wrong;
   EXPECT_EQ(loop.tick(reading)[0], 0);
   EXPECT_EQ(loop.force_text(), "force off: a reading is not finite");
+  EXPECT_EQ(loop.force_share(), 0);
 }
 
 // Runs a loop of a period of 1 ms whose ticks come after `elapsed` [s]; 0: as fast as it goes.
@@ -294,6 +308,35 @@ TEST(DeviceLoop, SaysThatTicksComeAtAnotherPaceThanThePeriod) {
   DeviceLoop loop(options, std::array{0.0});
   loop.arm();
   EXPECT_THAT(paced(loop, 1.4e-3, 2).second, HasSubstr("every 1.4 ms, not every 1 ms"));
+}
+
+// The law counts whole periods, the limit of speed the time itself.
+TEST(DeviceLoop, JudgesSpeedByTheTimeThatPassedWhateverThePace) {
+  for (const double elapsed : {1e-3, 1.2e-3, 1.5e-3, 1.6e-3, 2.4e-3, 2.6e-3}) {
+    for (const double speed : {0.095, 0.125}) {  // of a limit of 0.1 m/s
+      LoopOptions options = slide();
+      options.motors = Motors::real;
+      options.limits.tip_speed = 0.1;
+      options.limits.joint_speed = 15;
+      DeviceLoop loop(options, std::array{-0.04});
+      loop.arm();
+      DeviceLoop::Reading reading;
+      reading.elapsed = elapsed;
+      std::array<double, 1> x{-0.04};
+      reading.position = x;
+      for (int k = 0; k < 1500; ++k) {
+        x[0] = -0.04 + k % 2 * 1e-6;
+        loop.tick(reading);
+      }
+      ASSERT_EQ(loop.force_share(), 1) << elapsed;
+      double least = 1;
+      for (; x[0] < 0.03; x[0] += speed * elapsed) {
+        loop.tick(reading);
+        least = std::min(least, loop.force_share());
+      }
+      EXPECT_EQ(least<0.99, speed> 0.1) << elapsed << " s, " << speed << " m/s";
+    }
+  }
 }
 
 // Speeds would be judged too small, and energy forgotten too fast.
