@@ -2,9 +2,11 @@
 set(desktop ${PROJECT_SOURCE_DIR}/assets/desktop)
 set(package ${PROJECT_SOURCE_DIR}/assets/package)
 
+# The manual has the READMEs of sweeps and stories, with pictures that are not beside them here.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/assets ${PROJECT_SOURCE_DIR}/shaders
   DESTINATION share/limpid
   REGEX "/assets/(completions|desktop|package|pictures|python)$" EXCLUDE
+  REGEX "/assets/(stories|sweeps)/README.md$" EXCLUDE
   PATTERN "*.py" EXCLUDE
   PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/made/icons DESTINATION share)  # see app/CMakeLists.txt
@@ -17,8 +19,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/_limpid
   DESTINATION share/zsh/vendor-completions)
 install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/limpid.fish
   DESTINATION share/fish/vendor_completions.d)
-install(FILES ${package}/copyright ${PROJECT_SOURCE_DIR}/README.md
-  ${PROJECT_BINARY_DIR}/made/manual.html DESTINATION share/doc/limpid)
+install(FILES ${package}/copyright ${PROJECT_BINARY_DIR}/made/manual.html
+  DESTINATION share/doc/limpid)
 install(FILES ${PROJECT_SOURCE_DIR}/assets/python/limpid_device.py
   ${PROJECT_SOURCE_DIR}/assets/python/read_session.py ${PROJECT_SOURCE_DIR}/assets/python/ros2_node.py
   ${PROJECT_SOURCE_DIR}/assets/python/touch_env.py DESTINATION share/doc/limpid/examples)

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
+#include <utility>
 
 #include "app/base/markup.h"
 #include "app/base/version.h"
@@ -19,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestPage = std::size_t{1} << 20;
+constexpr std::size_t kLargestPicture = std::size_t{4} << 20;
 
 // A chapter: a README and its name in the list of contents.
 struct Chapter {
@@ -30,6 +33,7 @@ constexpr std::array kChapters{
     Chapter{"devices/README.md", "Devices and safety"},
     Chapter{"devices/LABORATORIES.md", "A new device"},
     Chapter{"devices/files/README.md", "Arms, scenes, sessions"},
+    Chapter{"render/model/README.md", "Models"},
     Chapter{"app/experiments/README.md", "Experiments"},
     Chapter{"assets/sweeps/README.md", "Sweeps"},
     Chapter{"assets/stories/README.md", "Stories"},
@@ -80,8 +84,43 @@ std::string plain_text(std::string_view html) {
   return out;
 }
 
-// Replaces links to files that are not in the page by their text, and gives headings anchors.
-std::string with_anchors(const Chapter& chapter, const std::string& html) {
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t first = 0; first < bytes.size(); first += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t i = first; i < first + 3; ++i) {
+      three = three << 8 | (i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u);
+    }
+    for (const int shift : {18, 12, 6, 0}) out += kDigits[three >> shift & 63u];
+  }
+  const std::size_t padding = (3 - bytes.size() % 3) % 3;
+  return out.replace(out.size() - padding, padding, padding, '=');
+}
+
+// Returns the picture that a chapter shows, as an address that holds it.
+std::string picture_data(const fs::path& tree, const Chapter& chapter, const std::string& link) {
+  constexpr std::array<std::pair<const char*, const char*>, 3> kKinds{
+      {{".gif", "gif"}, {".png", "png"}, {".svg", "svg+xml"}}};
+  const fs::path file = (tree / chapter.file).parent_path() / link;
+  const auto kind = std::ranges::find_if(
+      kKinds, [&](const auto& each) { return file.extension() == each.first; });
+  if (kind == kKinds.end()) {
+    throw FileError(fmt::format("{}: {}: no GIF, PNG or SVG", chapter.file, link));
+  }
+  try {
+    return fmt::format("data:image/{};base64,{}", kind->second,
+                       base64(read_text(file, kLargestPicture)));
+  } catch (const FileError& error) {
+    throw FileError(fmt::format("{}: {}", chapter.file, error.what()));
+  }
+}
+
+// Replaces links to files that are not in the page by their text, gives headings anchors, and puts
+// pictures into the page.
+std::string for_one_page(const fs::path& tree, const Chapter& chapter, const std::string& html) {
+  constexpr std::string_view kPicture = "<img src=\"";
   std::string out;
   std::size_t at = 0;
   while (at < html.size()) {
@@ -101,7 +140,13 @@ std::string with_anchors(const Chapter& chapter, const std::string& html) {
       const bool web = link.find("://") != std::string::npos;
       const std::string target = web ? link : within_page(chapter, link);
       out += target.empty() ? "<a>" : fmt::format("<a href=\"{}\">", target);
-    } else if (!whole.starts_with("<img ")) {
+    } else if (whole.starts_with(kPicture)) {
+      const std::size_t after = whole.find('"', kPicture.size());
+      const std::string link(whole.substr(kPicture.size(), after - kPicture.size()));
+      out += kPicture;
+      out += picture_data(tree, chapter, link);
+      out += whole.substr(after);
+    } else {
       out += whole;
     }
   }
@@ -160,6 +205,7 @@ nav {{ position: sticky; top: 0; height: 100vh; overflow: auto; padding: 1em; wi
 nav a {{ display: block; text-decoration: none; padding: 0.15em 0; }}
 nav input {{ width: 100%; box-sizing: border-box; font: inherit; }}
 main {{ padding: 0 2em 4em; max-width: 60em; min-width: 0; }}
+img {{ max-width: 100%; height: auto; }}
 table {{ border-collapse: collapse; display: block; overflow-x: auto; }}
 td, th {{ border-bottom: 1px solid #8884; padding: 0.3em 0.8em 0.3em 0; text-align: left; vertical-align: top; }}
 pre {{ overflow-x: auto; padding: 0.8em; background: #8882; }}
@@ -202,7 +248,7 @@ std::string manual_html(const fs::path& tree, const std::vector<ManualKey>& keys
   for (const Chapter& chapter : kChapters) {
     contents += fmt::format("<a href=\"#{}\">{}</a>\n", anchor_in(chapter.file, ""), chapter.name);
     const std::string html =
-        with_anchors(chapter, html_of(read_text(tree / chapter.file, kLongestPage)));
+        for_one_page(tree, chapter, html_of(read_text(tree / chapter.file, kLongestPage)));
     chapters +=
         fmt::format("<a id=\"{}\"></a>\n{}", anchor_in(chapter.file, ""), in_sections(html));
   }

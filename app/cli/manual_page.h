@@ -13,7 +13,8 @@ struct ManualKey {
 };
 
 // Returns the page as HTML, of the READMEs of a source tree, all settings, and these keys. Links
-// among the READMEs lead within the page; pictures are left out. Errors: FileError.
+// among the READMEs lead within the page, and pictures are in it as data. Errors: FileError, which
+// names the README and the file that is missing or no picture.
 std::string manual_html(const std::filesystem::path& tree, const std::vector<ManualKey>& keys);
 
 }  // namespace limpid

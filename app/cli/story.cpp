@@ -115,7 +115,7 @@ Command declare_story(CLI::App& app, MakeVideo make_video) {
   command->get_option("--force")->remove_needs(video);  // also for a session
   video->excludes(record)->excludes(check);
   record->excludes(check);
-  command->footer("How to write a story: assets/stories/README.md.");
+  command->footer("How to write a story: the chapter *Stories* of `limpid manual`.");
   return [options, make_video = std::move(make_video)] { return tell_story(*options, make_video); };
 }
 

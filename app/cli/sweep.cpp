@@ -272,7 +272,8 @@ Command declare_sweep(CLI::App& app) {
       "--allow-xacro", options->xacro,
       "expand the xacro files of arms that the plan names: this runs code in these files");
   command->footer(
-      "How to write a plan: assets/sweeps/README.md. The command writes DIR/table.h5, and parts of "
+      "How to write a plan: the chapter *Sweeps* of `limpid manual`. The command writes "
+      "DIR/table.h5, and parts of "
       "the table while\nthe sweep runs. Called again, the command continues where the sweep was "
       "stopped or killed.\n\n" +
       measure_help());

@@ -66,6 +66,16 @@ class Package(Run):
                          env={**environment, "PYTHONPATH": str(modules), "PYTHONDONTWRITEBYTECODE": "1"})
         self.assertEqual(said.strip(), str(self.root / "usr/bin/limpid"))
 
+    def test_links_of_its_pages_lead_to_files_of_its_own(self) -> None:
+        doc = self.root / "usr/share/doc/limpid"
+        pages = [path for path in self.root.rglob("*") if path.suffix in (".html", ".md")]
+        self.assertLessEqual({doc / "manual.html", doc / "examples/lessons/README.md"}, set(pages))
+        for page in pages:
+            links = r'(?:href|src)="([^"]*)"' if page.suffix == ".html" else r"\]\(([^)\s]*)"
+            for link in re.findall(links, page.read_text()):
+                if not re.match(r"#|data:|https?:", link):
+                    self.assertTrue((page.parent / link.partition("#")[0]).exists(), f"{page}: {link}")
+
     def test_lintian_accepts_it(self) -> None:
         said = self.must(tool("lintian"), "--allow-root", "--fail-on", "none", "--no-cfg", self.deb)
         # The known warning: appstream 1.0 asks for a home page, and there is none.
@@ -147,6 +157,7 @@ class Package(Run):
             "usr/share/applications/limpid.desktop",
             "usr/share/bash-completion/completions/limpid",
             "usr/share/doc/limpid/copyright",
+            "usr/share/doc/limpid/manual.html",
             "usr/share/fish/vendor_completions.d/limpid.fish",
             "usr/share/icons/hicolor/48x48/apps/limpid.png",
             "usr/share/icons/hicolor/scalable/apps/limpid.svg",
