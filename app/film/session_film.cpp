@@ -154,8 +154,8 @@ class Shown {
     return std::span<const double>(again_.rows).subspan(k * stride, stride);
   }
   void name_rerun() {
-    const double law = session_.layout.in(row_again(0), Column::kind)[0];
-    stage_.name_runs({{again_.recorded, again_.name}, false, {-1, static_cast<int>(law)}});
+    const auto law = static_cast<int>(session_.layout.in(row_again(0), Column::kind)[0]);
+    stage_.name_runs({{again_.recorded, again_.name}, false, {laws_at(session_, 0).front(), law}});
   }
 
   Moment see(std::size_t k) {

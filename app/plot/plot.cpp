@@ -84,8 +84,8 @@ std::string value_text(const PlotAxis& axis, const AxisMap& map, double value) {
 std::string label_at(const History& history, const Curve& curve, SampleIndex row) {
   const int law = law_at(history, curve, row);
   if (curve.law < 0 || law < 0 || law == curve.law) return curve.label;
-  return fmt::format("{}, now {}", info(CouplingKind{static_cast<std::uint8_t>(law)}).key,
-                     curve.label);
+  return fmt::format("{}, here {}", curve.label,
+                     info(CouplingKind{static_cast<std::uint8_t>(law)}).key);
 }
 
 std::vector<Line> visible_lines(const PlotFrame& frame, const PlotSpec& spec,

@@ -12,6 +12,7 @@
 
 #include "app/base/markup.h"
 #include "app/plot/axis.h"
+#include "app/plot/band_names.h"
 #include "app/plot/label_room.h"
 #include "app/plot/plot_canvas.h"
 #include "app/plot/shifted_canvas.h"
@@ -101,7 +102,13 @@ constexpr double kLabelLine = 14;  // height of a line of labels [px]
 constexpr double kLabelBase = 11;  // of their base line below its top [px]
 constexpr Rgb kPaper{255, 255, 255};
 constexpr double kSvgSign = 3.6, kSvgBetween = 64, kSvgEdge = 3;  // as on the screen [px]
-constexpr int kColumnsPerPixel = 2;  // as pictures are looked at closely
+constexpr double kEdgeStep = kSvgEdge + 1;                        // from one edge to the next [px]
+constexpr double kNameInset = 3, kNamesApart = 8;                 // of the names of bands [px]
+constexpr double kBelow = 42;                      // room under the area, with a row of legend [px]
+constexpr double kLeastArea = 40;                  // least height of the area [px]
+constexpr double kLegendFont = 0.6 * kCanvasFont;  // width of a character in the legend [px]
+constexpr double kEntrySample = 23, kEntryGap = 17;  // in the legend [px]
+constexpr int kColumnsPerPixel = 2;                  // as pictures are looked at closely
 
 std::string hex(Rgb c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
 
@@ -197,6 +204,18 @@ class SvgCanvas : public PlotCanvas {
   int areas_ = 0;
 };
 
+// Returns the text, with an ellipsis at its end if it is wider than `width` in the legend.
+std::string with_ellipsis(const std::string& text, double width) {
+  const auto most = static_cast<std::size_t>(std::max(1.0, width / kLegendFont));
+  if (count_characters(text) <= most) return text;
+  std::size_t characters = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80;
+    if (begins && ++characters == most) return text.substr(0, i) + "\u2026";
+  }
+  return text;
+}
+
 // Draws the picture of a plot on any canvas.
 class PlotDrawing {
  public:
@@ -206,7 +225,10 @@ class PlotDrawing {
         picture_(picture),
         palette_(palette(picture.theme)),
         right_(picture.width - 14.0),
-        bottom_(picture.height - 42.0) {}
+        bottom_(picture.height - kBelow) {
+    lay_out_legend();
+    room_ = LabelRoom(area());
+  }
 
   Area area() const { return {left_, top_, right_ - left_, bottom_ - top_}; }
   const Palette& colours() const { return palette_; }
@@ -280,12 +302,14 @@ class PlotDrawing {
       line(x, top_, x, bottom_, palette_.grid);
       label(x, bottom_ + 16, Anchor::middle, palette_.muted, place.label);
     }
-    label(right_, picture_.height - 10, Anchor::end, palette_.text,
-          spec_.x.label + "  [" + unit_text(spec_.x, picture_.x) + "]");
+    label(right_, picture_.height - 10, Anchor::end, palette_.text, across_name());
+  }
+  std::string across_name() const {
+    return spec_.x.label + "  [" + unit_text(spec_.x, picture_.x) + "]";
   }
 
   void value_axis() {
-    for (const AxisPlace& place : axis_places(spec_.y, picture_.y, picture_.height / 45.0)) {
+    for (const AxisPlace& place : axis_places(spec_.y, picture_.y, (bottom_ + kBelow) / 45)) {
       const double y = y_of(place.value);
       line(left_, y, right_, y, palette_.grid);
       label(left_ - 6, y + 4, Anchor::end, palette_.muted, place.label);
@@ -352,39 +376,44 @@ class PlotDrawing {
   double column(double number) const { return x_at((number - first_column_) / columns_); }
 
   void bands() {
-    double line = 0;  // line of the names, from the top; each band with names has its own
+    double base = top_ + 15 + kEdgeStep * (law_edges(spec_.bands) - 1);  // of the names
     for (const Band& each : spec_.bands) {
-      double free_from = left_;
-      const double y = top_ + 15 + 14 * line;
-      bool labelled = false;
-      const auto most = static_cast<double>(std::max<std::size_t>(2, each.names.size()) - 1);
-      int before = -1;
+      std::vector<NamedStretch> named;
       for (const BandStretch& stretch : band_stretches(each, history_, rows_)) {
-        const bool named = std::exchange(before, stretch.said) != stretch.said;
-        if (stretch.said == 0 && !each.laws) continue;
         const double left = column(static_cast<double>(stretch.from));
-        const Area box{left, top_, column(static_cast<double>(stretch.to)) - left, bottom_ - top_};
-        const auto tint = static_cast<double>(each.tint);
-        if (each.laws) {
-          const Rgb law = law_ink(palette_, stretch.said);
-          if (each.lane < 0) canvas_->rect(box, law, tint);
-          const double edge = box.top + (kSvgEdge + 1) * std::max(0, each.lane);
-          canvas_->rect({box.left, edge, box.width, kSvgEdge}, law, 1);
-        } else if (each.striped) {
-          canvas_->stripes(box, palette_.muted);
-        } else {
-          canvas_->rect(box, palette_.accent, tint * stretch.said / most);
-        }
+        const double right = column(static_cast<double>(stretch.to));
+        stretch_of(each, stretch.said, left, right - left);
         const std::string& name = each.names[static_cast<std::size_t>(stretch.said)];
-        const double x = std::max(left, left_) + 3, wide = width_of(name);
-        // A short time under another law is a line without a name.
-        if (!named || x < free_from || (each.laws && box.width < wide)) continue;
-        label(x, y, Anchor::start, palette_.text, name);
-        free_from = x + wide + 8;
-        room_.take({x, y - kLabelBase, wide + 8, kLabelLine});
-        labelled = true;
+        named.push_back(
+            {stretch.said, left, right, name.empty() ? 0 : kNameInset + width_of(name)});
       }
-      line += labelled ? 1 : 0;
+      // A short time under another law is a line without a name.
+      const auto placed = place_names(named, {left_, right_, kNamesApart, !each.laws});
+      for (const PlacedName& place : placed) {
+        const NamedStretch& of = named[place.stretch];
+        const double x = place.left + kNameInset;
+        label(x, base, Anchor::start, palette_.text, each.names[static_cast<std::size_t>(of.said)]);
+        room_.take({x, base - kLabelBase, of.width - kNameInset + kNamesApart, kLabelLine});
+      }
+      base += placed.empty() ? 0 : kLabelLine;  // each band with names has a line
+    }
+  }
+
+  // Draws a stretch in which the band says this.
+  void stretch_of(const Band& band, int said, double left, double width) {
+    if (said == 0 && !band.laws) return;
+    const Area box{left, top_, width, bottom_ - top_};
+    const auto tint = static_cast<double>(band.tint);
+    const auto most = static_cast<double>(std::max<std::size_t>(2, band.names.size()) - 1);
+    if (band.laws) {
+      const Rgb law = law_ink(palette_, said);
+      if (band.lane < 0) canvas_->rect(box, law, tint);
+      const double edge = top_ + kEdgeStep * std::max(0, band.lane);
+      canvas_->rect({left, edge, width, kSvgEdge}, law, 1);
+    } else if (band.striped) {
+      canvas_->stripes(box, palette_.muted);
+    } else {
+      canvas_->rect(box, palette_.accent, tint * said / most);
     }
   }
 
@@ -456,15 +485,53 @@ class PlotDrawing {
     canvas_->polyline(line, rgb, kLine);
   }
 
-  void legend() {
+  struct Entry {
+    const Curve* curve;  // null: words about those without room
+    std::string label;
+    double left;
+    int row;
+  };
+
+  // Lays out the legend in as many rows as it needs, and takes them from the curves' area. Entries
+  // without room are counted in the last row.
+  void lay_out_legend() {
     double x = left_;
+    int row = 0;
     for (const Curve& curve : spec_.curves) {
       if (!curve.visible) continue;
-      const double y = picture_.height - 10;
-      canvas_->line({x, y - 4}, {x + 18, y - 4}, colour_of(palette_, curve), kLine, 0, 0);
-      sign(x + 9, y - 4, curve.sign, colour_of(palette_, curve));
-      label(x + 23, y, Anchor::start, palette_.text, curve.label);
-      x += 40 + width_of(curve.label, 0.6 * kCanvasFont);
+      const std::string label = with_ellipsis(curve.label, right_ - left_ - kEntrySample);
+      const double wide = kEntrySample + width_of(label, kLegendFont);
+      if (x > left_ && x + wide > right_) {
+        x = left_;
+        ++row;
+      }
+      entries_.push_back({&curve, label, x, row});
+      x += wide + kEntryGap;
+    }
+    // The horizontal axis' name stands at the end of the last row, or has one of its own.
+    const bool named = spec_.kind != PlotKind::time && !entries_.empty();
+    if (named && x > right_ - width_of(across_name(), kLegendFont)) ++row;
+    const int most = std::max(0, static_cast<int>((bottom_ - top_ - kLeastArea) / kLabelLine));
+    if (row > most) {
+      row = most;
+      const auto left_out = std::erase_if(entries_, [&](const Entry& e) { return e.row >= most; });
+      entries_.push_back({nullptr, fmt::format("and {} more", left_out), left_, most});
+    }
+    last_row_ = row;
+    bottom_ -= kLabelLine * row;
+  }
+
+  void legend() {
+    for (const Entry& e : entries_) {
+      const double y = picture_.height - 10 - kLabelLine * (last_row_ - e.row);
+      if (e.curve == nullptr) {
+        label(e.left, y, Anchor::start, palette_.muted, e.label);
+        continue;
+      }
+      const Rgb rgb = colour_of(palette_, *e.curve);
+      canvas_->line({e.left, y - 4}, {e.left + 18, y - 4}, rgb, kLine, 0, 0);
+      sign(e.left + 9, y - 4, e.curve->sign, rgb);
+      label(e.left + kEntrySample, y, Anchor::start, palette_.text, e.label);
     }
   }
 
@@ -476,6 +543,8 @@ class PlotDrawing {
   double top_ = 32;
   double right_;
   double bottom_;
+  std::vector<Entry> entries_;  // of the legend, whose rows count from 0
+  int last_row_ = 0;
   int columns_ = 1;          // of the traces, over the area's width
   double first_column_ = 0;  // column at the area's left end
   PixelWindow window_{};

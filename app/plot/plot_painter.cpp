@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "app/plot/axis.h"
+#include "app/plot/band_names.h"
 #include "app/plot/label_room.h"
 #include "app/plot/plot_frame.h"
 #include "app/plot/trace.h"
@@ -380,32 +380,34 @@ void for_stretches(const PlotFrame& frame, const Band& band, const History& hist
   }
 }
 
-// Draws the names of a band at `line`, counted from the top. Returns whether there are any.
-bool draw_names(const PlotFrame& frame, const Band& band, float line, const History& history,
+// Draws the names of a band at `top`. Returns whether there are any.
+bool draw_names(const PlotFrame& frame, const Band& band, float top, const History& history,
                 const std::vector<SampleIndex>& rows, LabelRoom& room) {
-  const auto edges = static_cast<float>(std::max(1, band.lane + 1));
-  float free_from = frame.area.min.x;
-  int before = -1;
-  bool drawn = false;
+  const float inset = 2 * frame.scale;
+  const auto name_of = [&](int said) -> const std::string& {
+    return band.names[static_cast<std::size_t>(said)];
+  };
+  std::vector<NamedStretch> stretches;
   for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
-    const std::string& name = band.names[static_cast<std::size_t>(now)];
-    const ImVec2 label = text_size(Face::small, name);
-    const float x =
-        std::max(std::min(left, frame.area.max.x - label.x - 6 * frame.scale), frame.area.min.x) +
-        2 * frame.scale;
-    if (name.empty() || std::exchange(before, now) == now || x < free_from) return;
-    // Names would fill a low plot.
-    if (frame.area.height() < 6 * label.y) return;
-    // A short time under another law is a line without a name.
-    if (!band.names.front().empty() && right - left < label.x) return;
-    const float y = frame.area.min.y + edges * (kLawEdge * frame.scale + 1) + line * label.y;
-    draw_backed_text(frame, {x, y}, band.striped ? frame.palette.text : frame.palette.muted, name,
-                     0.85f);
-    free_from = x + label.x + 12 * frame.scale;
-    room.take(ScreenRect{{x, y}, {free_from, y + label.y}}.box());
-    drawn = true;
+    const std::string& name = name_of(now);
+    const float width = name.empty() ? 0 : text_size(Face::small, name).x + inset;
+    stretches.push_back(
+        {now, static_cast<double>(left), static_cast<double>(right), static_cast<double>(width)});
   });
-  return drawn;
+  // A short time under another law is a line without a name.
+  const NameLine line{static_cast<double>(frame.area.min.x),
+                      static_cast<double>(frame.area.max.x - 4 * frame.scale),
+                      static_cast<double>(12 * frame.scale), !band.laws};
+  const std::vector<PlacedName> placed = place_names(stretches, line);
+  for (const PlacedName& each : placed) {
+    const std::string& name = name_of(stretches[each.stretch].said);
+    const ImVec2 size = text_size(Face::small, name);
+    const ImVec2 at{static_cast<float>(each.left) + inset, top};
+    draw_backed_text(frame, at, band.striped ? frame.palette.text : frame.palette.muted, name,
+                     0.85f);
+    room.take(ScreenRect{at, {at.x + size.x + 12 * frame.scale, at.y + size.y}}.box());
+  }
+  return !placed.empty();
 }
 
 // Draws stripes from lower left to upper right; those of stretches side by side fit together.
@@ -636,9 +638,13 @@ void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& his
 
 void draw_band_names(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                      const std::vector<SampleIndex>& rows, LabelRoom& room) {
-  float line = 0;
+  const float height = text_size(Face::small, "0").y;
+  // Names would fill a low plot.
+  if (frame.area.height() < 6 * height) return;
+  const auto edges = static_cast<float>(law_edges(spec.bands));
+  float top = frame.area.min.y + edges * (kLawEdge * frame.scale + 1);
   for (const Band& band : spec.bands) {
-    line += draw_names(frame, band, line, history, rows, room) ? 1.0f : 0.0f;
+    if (draw_names(frame, band, top, history, rows, room)) top += height;
   }
 }
 

@@ -101,7 +101,7 @@ float free_shade(Ink ink, std::span<const Curve> others) {
 }
 
 // Returns the curve of the same channel of a further run. A plot of one thing has the colours of
-// the runs' laws, a plot of several those of the things.
+// the runs' laws, lighter where they are the same; a plot of several those of the things.
 Curve of_run(std::size_t run, const Curve& first, bool only, std::span<const Curve> others,
              const TraceChannels& channels, const RunNames& names) {
   Curve curve = first;
@@ -109,17 +109,18 @@ Curve of_run(std::size_t run, const Curve& first, bool only, std::span<const Cur
   curve.channel += offset;
   if (curve.across >= 0) curve.across += offset;
   curve.sign = names.beside ? sign_of_lane(run) : RunSign::ring;
+  const float lighter = std::clamp(first.shade + kLaneShades[run], -1.0f, 1.0f);
   if (names.beside) {
     const auto before = std::span(names.laws).first(std::min(run, names.laws.size()));
     const bool another = curve.law >= 0 && std::ranges::count(before, names.law(run)) == 0;
     if (curve.law >= 0) curve.law = names.law(run);
     if (curve.law >= 0) curve.law_channel = law_channel(run, channels);
-    if (!another) curve.shade = std::clamp(first.shade + kLaneShades[run], -1.0f, 1.0f);
+    if (!another) curve.shade = lighter;
   } else if (only) {
     curve.law = names.law(run);
     curve.law_channel = curve.law >= 0 ? law_channel(run, channels) : -1;
     curve.ink = Ink::rerun;
-    curve.shade = 0;
+    curve.shade = curve.law >= 0 && curve.law == first.law ? lighter : 0;
   } else {
     curve.shade = free_shade(curve.ink, others);
   }
@@ -157,12 +158,13 @@ std::string word_of(std::size_t run, const RunNames& names) {
   return fmt::format("run {}", run + 1);
 }
 
-// Returns the band of a run's law; of several runs at once each has an edge of its own.
+// Returns the band of a run's law. Of several runs each has an edge of its own; one that was
+// recorded keeps its tint beside a re-run.
 Band law_band(std::size_t run, const TraceChannels& channels, const RunNames& names) {
   Band laws{
       .channel = law_channel(run, channels), .tint = 0.12f, .laws = true, .key = "coupling.kind"};
   if (names.several()) {
-    laws.lane = static_cast<int>(run);
+    if (names.beside || run != kMainLane) laws.lane = static_cast<int>(run);
     laws.key = (run == kMainLane ? "" : lane_mark(run)) + laws.key;
   }
   const std::string word = word_of(run, names);
@@ -175,9 +177,8 @@ Band law_band(std::size_t run, const TraceChannels& channels, const RunNames& na
 // Returns bands for the laws of runs, for motors at their limit, and for missing force.
 std::vector<Band> bands(const TraceChannels& channels, const RunNames& names) {
   std::vector<Band> bands;
-  const bool again = names.several() && !names.beside;
   const std::size_t runs = std::max<std::size_t>(1, names.names.size());
-  for (std::size_t run = 0; run < runs && !again; ++run) {
+  for (std::size_t run = 0; run < runs; ++run) {
     bands.push_back(law_band(run, channels, names));
   }
   bands.push_back(force_band(*channels.find("device/force_state")));
@@ -269,8 +270,8 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     curve.visible = !names.beside || !info.seldom;
     firsts.push_back(std::move(curve));
   }
-  // A curve that is its run's only one has the colour of the run's law.
-  if (names.beside && firsts.size() == 1) {
+  // A curve that is its run's only one has the colour of the run's law, if that is known.
+  if (names.law(kMainLane) >= 0 && firsts.size() == 1) {
     firsts[0].law = names.law(kMainLane);
     firsts[0].law_channel = law_channel(kMainLane, channels);
   }

@@ -34,7 +34,7 @@ struct RunNames {
   std::vector<std::string> names;  // fewer than two for a single run
   bool beside = false;             // all run at once; else the second is a re-run of the first,
                                    // whose several curves in a plot are named as without it
-  std::vector<int> laws = {};      // numbers of the laws of runs at once; -1: unknown
+  std::vector<int> laws = {};      // numbers of the runs' laws; -1: unknown
 
   bool several() const { return names.size() > 1; }
   std::string name(std::size_t run) const { return run < names.size() ? names[run] : ""; }

@@ -386,6 +386,54 @@ TEST_F(ADrawing, HasAnEdgeOfEachLaw) {
   EXPECT_FALSE(draw().says("standard")) << "a short time has no name";
 }
 
+// Names of laws keep clear of one another and of the edges, and each law with room has one.
+TEST_F(ADrawing, NamesALawWhereTheNameBeforeEnds) {
+  History laws({.channels = 2});
+  for (int k = 0; k <= 10000; ++k) {
+    const double t = 1e-3 * k;
+    laws.append(t, std::array{t, t < 1 ? 0.0 : 1.0});
+  }
+  spec_.bands = {{.channel = 1, .names = {"standard law", "proposed"}, .laws = true}};
+  Notes notes;
+  picture_.start = -0.3;  // the first one lasts 1 s of 10.3: 63 px for 12 letters of 6.6
+  picture_.stop = 10;
+  draw_plot(spec_, laws, picture_, notes);
+  EXPECT_FALSE(notes.says("standard law"));
+  EXPECT_NEAR(notes.said("proposed").at.x, x_of(1) + 3, 1.5);
+  picture_.stop = 7.3;  // now it has 85 px, and the gap behind its name reaches beyond
+  Notes close;
+  draw_plot(spec_, laws, picture_, close);
+  EXPECT_NEAR(close.said("standard law").at.x, x_of(0) + 3, 1.5);
+  EXPECT_NEAR(close.said("proposed").at.x, x_of(0) + 3 + 12 * 6.6 + 8 + 3, 1.5);
+}
+
+TEST_F(ADrawing, NamesALawThatHadNoRoomAtFirst) {
+  History laws({.channels = 2});
+  for (int k = 0; k <= 10000; ++k) {
+    const double t = 1e-3 * k;
+    if (t >= 4.2 && t < 5) continue;  // the predictive law is interrupted just after it began
+    laws.append(t, std::array{t, t < 4 ? 0.0 : 1.0});
+  }
+  spec_.bands = {{.channel = 1, .names = {"standard", "predictive"}, .laws = true}};
+  Notes notes;
+  draw_plot(spec_, laws, picture_, notes);
+  EXPECT_NEAR(notes.said("predictive").at.x, x_of(5) + 3, 1.5);
+}
+
+TEST_F(ADrawing, NamesLawsBelowAllEdges) {
+  spec_.bands = {{.channel = 2, .names = {"standard", "", "predictive"}, .laws = true},
+                 {.channel = 1, .names = {"standard", "proposed"}, .laws = true, .lane = 1}};
+  const Notes notes = draw();
+  double lowest = 0;
+  for (const auto& each : notes.filled) {
+    if (each.box.height == 3) lowest = std::max(lowest, each.box.top + 3);
+  }
+  EXPECT_EQ(lowest, 32 + 7);
+  for (const char* name : {"predictive", "proposed"}) {
+    EXPECT_GE(notes.said(name).at.y - 9, lowest) << name;
+  }
+}
+
 TEST_F(ADrawing, OverAnotherChannelNamesBoth) {
   spec_.kind = PlotKind::cross;
   spec_.x = {.label = "way", .unit = "mm", .factor = 1e3};

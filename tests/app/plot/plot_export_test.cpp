@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/utf8.h"
+
 namespace limpid {
 namespace {
 
@@ -314,6 +316,98 @@ TEST(PlotSvg, HasNoLabelOnAnotherOneNorBeyondTheArea) {
                          std::abs(places[i].base - places[k].base) >= 12;
       EXPECT_TRUE(apart) << places[i].text << " lies on " << places[k].text;
     }
+  }
+}
+
+// A plot with as many curves as labels, over time or over another channel.
+PlotSpec with_legend(const std::vector<std::string>& labels, PlotKind kind) {
+  PlotSpec spec{.title = "Energy", .kind = kind, .y = {.unit = "J"}};
+  spec.x = {.label = "human and contact torque", .unit = "N m"};
+  for (const std::string& label : labels) {
+    spec.curves.push_back(
+        {.channel = 0, .across = kind == PlotKind::cross ? 1 : -1, .label = label});
+  }
+  return spec;
+}
+
+double lower_edge_of_area(const std::string& svg) {
+  double top = 0, height = 0;
+  const std::string area = svg.substr(svg.find("<clipPath"));
+  EXPECT_EQ(std::sscanf(area.c_str(),
+                        "<clipPath id=\"area1\"><rect x=\"%*f\" y=\"%lf\" width=\"%*f\" "
+                        "height=\"%lf\"",
+                        &top, &height),
+            2);
+  return top + height;
+}
+
+// Expects the legend's texts within the picture, beside one another, and under the area's times.
+void expect_room(const std::vector<TextPlace>& places, const std::string& svg,
+                 const PlotPicture& picture) {
+  for (const TextPlace& each : places) {
+    EXPECT_LE(each.right, picture.width) << each.text;
+    EXPECT_LE(each.base, picture.height - 4) << each.text;
+    EXPECT_GE(each.base - 12, lower_edge_of_area(svg) + 16) << each.text;
+    for (const TextPlace& other : places) {
+      if (&other == &each || other.base != each.base || other.left < each.left) continue;
+      EXPECT_GE(other.left - 23, each.right) << other.text << " or its sample lies on it";
+    }
+  }
+}
+
+TEST(PlotSvg, HasAllOfItsLegendInRowsWithinThePicture) {
+  const PlotPicture picture{0, 3, {{-3, 3}}, {{-3, 3}}};
+  for (const PlotKind kind : {PlotKind::time, PlotKind::cross}) {
+    for (const int count : {1, 2, 3, 9}) {
+      std::vector<std::string> texts;
+      for (int i = 1; i <= count; ++i) {
+        texts.push_back(fmt::format("re-run: predictive, controller energy {}", i));
+      }
+      const std::string svg = plot_svg(with_legend(texts, kind), two_channels(), picture);
+      if (kind == PlotKind::cross) texts.emplace_back("human and contact torque  [N m]");
+      const auto places = places_of(svg, texts);
+      ASSERT_EQ(places.size(), texts.size()) << count;
+      expect_room(places, svg, picture);
+    }
+  }
+}
+
+TEST(PlotSvg, ShortensWhatIsWiderThanARowOfItsLegend) {
+  std::string label = "recorded:";
+  for (int i = 0; i < 30; ++i) label += " \u03b7 = 2";  // a letter of two bytes
+  const PlotPicture picture{0, 3, {{-3, 3}}, {{-3, 3}}};
+  const std::string svg =
+      plot_svg(with_legend({label, "re-run"}, PlotKind::time), two_channels(), picture);
+  EXPECT_EQ(svg.find(label), std::string::npos);
+  const std::size_t begin = svg.find("recorded:"), end = svg.find('<', begin);
+  ASSERT_NE(begin, std::string::npos);
+  const std::string shown = svg.substr(begin, end - begin);
+  EXPECT_TRUE(shown.ends_with("\u2026")) << shown;
+  EXPECT_TRUE(label.starts_with(shown.substr(0, shown.size() - 3))) << shown;
+  const double right = 56 + 23 + 0.6 * 12 * static_cast<double>(count_characters(shown));
+  EXPECT_LE(right, picture.width - 14);
+  EXPECT_GT(right, picture.width - 14 - 12) << "it takes the whole row";
+  EXPECT_EQ(places_of(svg, {"re-run"}).size(), 1u);
+}
+
+// A low picture keeps room for its curves, and says how many names had none.
+TEST(PlotSvg, CountsWhatItsLegendHasNoRoomFor) {
+  const PlotPicture picture{0, 3, {{-3, 3}}, {{-3, 3}}, 720, 200};
+  std::vector<std::string> texts;
+  for (int i = 1; i <= 30; ++i) {
+    texts.push_back(fmt::format("re-run: predictive, controller energy {}", i));
+  }
+  for (const PlotKind kind : {PlotKind::time, PlotKind::cross}) {
+    const std::string svg = plot_svg(with_legend(texts, kind), two_channels(), picture);
+    EXPECT_GE(lower_edge_of_area(svg), 32 + 40);
+    std::vector<std::string> all = texts;
+    const std::size_t shown = places_of(svg, texts).size();
+    EXPECT_GT(shown, 5u);
+    all.push_back(fmt::format("and {} more", 30 - shown));
+    all.emplace_back("human and contact torque  [N m]");
+    const auto places = places_of(svg, all);
+    EXPECT_EQ(places.size(), shown + (kind == PlotKind::cross ? 2 : 1));
+    expect_room(places, svg, picture);
   }
 }
 

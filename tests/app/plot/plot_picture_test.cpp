@@ -238,6 +238,54 @@ TEST_F(APicture, TintsAndNamesTheStretchesOfABand) {
   EXPECT_NEAR(find("contact")->min.x, x_of(4), 6);
 }
 
+// The predictive law, interrupted just after it began, is named where it has room.
+TEST_F(APicture, NamesEachLawThatHasRoom) {
+  spec_.bands = {{.channel = 1, .names = {"standard", "predictive"}, .laws = true}};
+  fill(2, [](int c, double t) {
+    return c == 0 ? wave(t) : t < 4 ? 0 : t > 4.1 && t < 5 ? std::nan("") : 1;
+  });
+  draw();
+  ASSERT_TRUE(find("standard"));
+  ASSERT_TRUE(find("predictive"));
+  EXPECT_NEAR(find("predictive")->min.x, x_of(5), 6);
+}
+
+TEST_F(APicture, NamesALawWhereTheNameBeforeEnds) {
+  spec_.bands = {{.channel = 1, .names = {"standard", "proposed"}, .laws = true}};
+  double until = 5;
+  const auto value = [&](int c, double t) { return c == 0 ? wave(t) : t < until ? 0.0 : 1.0; };
+  fill(2, value);
+  draw();
+  ASSERT_TRUE(find("standard"));
+  // The first law lasts as long as its name is wide, and a little longer.
+  const float wide = find("standard")->max.x - area().min.x + 4;
+  until = static_cast<double>(wide / (x_of(1) - x_of(0)));
+  fill(2, value);
+  plot_.reset();
+  draw();
+  ASSERT_TRUE(find("standard"));
+  ASSERT_TRUE(find("proposed"));
+  EXPECT_GT(find("proposed")->min.x, find("standard")->max.x + 6);
+  EXPECT_LT(find("proposed")->min.x, find("standard")->max.x + 20);
+}
+
+// A recorded run has a tint and the first edge, its re-run the second one: names hide neither.
+TEST_F(APicture, NamesLawsBelowAllEdges) {
+  spec_.bands = {{.channel = 1, .names = {"recorded standard", "recorded proposed"}, .laws = true},
+                 {.channel = 2, .names = {"standard", "re-run"}, .laws = true, .lane = 1}};
+  fill(3, [](int c, double t) { return c == 0 ? wave(t) : t < 5 ? 0.0 : 1.0; });
+  draw();
+  const float x = x_of(8), top = area().min.y;
+  const Rgb law = law_ink(current_palette(), 1);
+  for (const char* name : {"recorded proposed", "re-run"}) {
+    ASSERT_TRUE(find(name)) << name;
+    EXPECT_GT(find(name)->min.y, top + 7) << name;
+  }
+  EXPECT_TRUE(inked({x, top + 1.5f}, law));
+  EXPECT_TRUE(inked({x, top + 5.5f}, law));
+  EXPECT_GT(find("re-run")->min.y, find("recorded proposed")->max.y - 3) << "in the next line";
+}
+
 TEST_F(APicture, TintsTheSelectedStretchAsFarAsItIsInSight) {
   fill(1, [](int, double t) { return wave(t); });
   const Rgb tint = current_palette().accent;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 namespace limpid {
@@ -171,6 +172,57 @@ TEST(PlotChoice, DrawsARerunInItsLawsColour) {
   const PlotSpec spec = plot_spec(default_plots()[0], channels, names);
   EXPECT_EQ(colour_of(kLightPalette, spec.curves[1]), law_ink(kLightPalette, 2));
   EXPECT_NE(colour_of(kLightPalette, spec.curves[0]), law_ink(kLightPalette, 2));
+}
+
+// Beside a re-run the recorded run's past keeps the law that made it: the same tint and colours as
+// without. The re-run has an edge of its own.
+TEST(PlotChoice, KeepsTheLawsOfARecordedRunBesideARerun) {
+  const TraceChannels channels{RowLayout(3)};
+  const int kind = static_cast<int>(Channel::kind);
+  for (const PlotChoice& choice : default_plots()) {
+    const PlotSpec alone = plot_spec(choice, channels, {});
+    const PlotSpec spec = plot_spec(choice, channels, kRerun);
+    std::vector<Band> laws;
+    std::ranges::copy_if(spec.bands, std::back_inserter(laws), &Band::laws);
+    ASSERT_EQ(laws.size(), 2U) << spec.title;
+    EXPECT_EQ(laws[0].channel, kind);
+    EXPECT_EQ(laws[0].lane, -1) << "a tint";
+    EXPECT_EQ(laws[0].tint, alone.bands.front().tint);
+    EXPECT_EQ(laws[0].key, alone.bands.front().key);
+    EXPECT_EQ(laws[0].names.front(), "recorded standard");
+    EXPECT_EQ(laws[1].channel, kind + channels.count());
+    EXPECT_EQ(laws[1].lane, 1) << "an edge";
+    EXPECT_EQ(laws[1].names.front(), "re-run standard");
+    for (std::size_t i = 0; i < alone.curves.size(); ++i) {
+      EXPECT_EQ(colour_of(kLightPalette, spec.curves[i]),
+                colour_of(kLightPalette, alone.curves[i]));
+      EXPECT_EQ(spec.curves[i].law_channel, alone.curves[i].law_channel);
+    }
+  }
+}
+
+TEST(PlotChoice, DrawsARecordedRunInItsLawsColourWhereThatIsKnown) {
+  const TraceChannels channels{RowLayout(3)};
+  RunNames names = kRerun;
+  names.laws = {1, 2};
+  for (const PlotChoice& choice : {default_plots().front(), default_plots().back()}) {
+    const PlotSpec spec = plot_spec(choice, channels, names);
+    ASSERT_EQ(spec.curves.size(), 2U);
+    const int kind = static_cast<int>(Channel::kind);
+    for (const int run : {0, 1}) {
+      const Curve& curve = spec.curves[static_cast<std::size_t>(run)];
+      EXPECT_EQ(colour_of(kLightPalette, curve), law_ink(kLightPalette, 1 + run));
+      EXPECT_EQ(colour_of(kLightPalette, curve, 0), law_ink(kLightPalette, 0)) << "a part";
+      EXPECT_EQ(curve.law_channel, kind + run * channels.count());
+    }
+  }
+  names.laws = {2, 2};
+  const PlotSpec same = plot_spec(default_plots().front(), channels, names);
+  EXPECT_EQ(colour_of(kLightPalette, same.curves[0]), law_ink(kLightPalette, 2));
+  EXPECT_NE(colour_of(kLightPalette, same.curves[0]), colour_of(kLightPalette, same.curves[1]));
+  for (const Curve& curve : plot_spec(default_plots()[2], channels, names).curves) {
+    EXPECT_EQ(curve.law, -1) << "it has its thing's colour";
+  }
 }
 
 // In a plot of several things a law's tints would be alike: those of the standard one are greys.
