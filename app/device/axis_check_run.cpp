@@ -114,6 +114,8 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
     throw std::invalid_argument(
         "a device can be checked only with an arm of the same number of joints");
   }
+  progress.arm = arm;
+  progress.begun = true;
   Limits set(arm, limits);
   const auto joints = static_cast<std::size_t>(device.traits().dof);
   std::atomic<bool> done = false;

@@ -19,6 +19,8 @@ enum class CheckEnd : std::uint8_t { none, stopped, no_window, gone, open_hand, 
 // Exchange between window and check; for any thread.
 struct AxisCheckProgress {
   std::atomic<int> axis{0};
+  ArmDescription arm;  // that the device is taken for, once the check has begun
+  std::atomic<bool> begun{false};
   std::atomic<AxisStage> stage{AxisStage::resting};
   std::atomic<bool> cancel{false};
   std::atomic<CheckEnd> end{CheckEnd::none};

@@ -56,7 +56,8 @@ void draw_ring(const Vec3& around, float radius, float thick, Rgb tint, const Ca
   list.AddCircle(middle, radius, colour(tint), 0, thick);
 }
 
-// Draws a force below a point that is held.
+// Draws a force below a point that is held: left of it, or right where the picture's edge leaves no
+// room. Near the foot, or where the point is out of the picture, it stays within.
 void draw_newtons(double force, const Vec3& at, const Camera& camera, ScreenRect picture,
                   ImDrawList& list) {
   const auto pixel = camera.project(at);
@@ -66,9 +67,18 @@ void draw_newtons(double force, const Vec3& at, const Camera& camera, ScreenRect
   const float em = face->FontSize, pad = 0.3f * em;
   const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
   const ImVec2 middle = in_window(picture, *pixel);
-  const ImVec2 place(middle.x - 1.8f * em - size.x, middle.y + 0.9f * em);
-  list.AddRectFilled({place.x - pad, place.y - 0.5f * pad},
-                     {place.x + size.x + pad, place.y + size.y + 0.5f * pad},
+  const ImVec2 beyond(pad, 0.5f * pad);
+  const auto within = [&](float left) {
+    const float x = std::min(left, picture.max.x - size.x - beyond.x);
+    const float y = std::min(middle.y + 0.9f * em, picture.max.y - size.y - beyond.y);
+    return ImVec2(std::max(x, picture.min.x + beyond.x), std::max(y, picture.min.y + beyond.y));
+  };
+  const float apart = 1.8f * em;
+  ImVec2 place = within(middle.x - apart - size.x);
+  const bool over = place.x + size.x + beyond.x > middle.x - em && place.x < middle.x + em;
+  if (over) place = within(middle.x + apart);
+  list.AddRectFilled({place.x - beyond.x, place.y - beyond.y},
+                     {place.x + size.x + beyond.x, place.y + size.y + beyond.y},
                      colour(current_palette().backdrop, 0.75f), 3);
   list.AddText(face, em, place, colour(ink(current_palette(), Ink::hand)), text.c_str());
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "app/desktop/device/push_sketch.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/motor_limits.h"
@@ -79,7 +80,7 @@ bool draw_arm(DeviceController& devices, const LiveStage& live, StepState state)
   const bool in_place = live.loop().device_in_place();
   const bool asks = hub.may_say_arm() && hub.asks_for_arm();
   begin_step(state, "Its arm", in_place && !asks ? live.stage().arm().name : std::string());
-  tooltip("Limpid limits the force by this arm's ranges and link lengths.");
+  tooltip("The joint ranges and link lengths of this arm set the limits of the force.");
   bool file = false;
   if (asks) {
     ImGui::TextWrapped(
@@ -114,7 +115,11 @@ void draw_axes(DeviceController& devices, StepState state) {
              : state == StepState::done ? "move as they are pushed"
                                         : "");
   if (check != nullptr) {
-    ImGui::TextWrapped("%s", what_to_do(check->stage));
+    const AxisStage stage = check->stage;
+    if (check->begun && draw_push_sketch(check->arm, check->axis, stage == AxisStage::pushing)) {
+      flow(8 * ImGui::GetFontSize());
+    }
+    ImGui::TextWrapped("%s", what_to_do(stage));
     if (ImGui::Button("Stop (Esc)")) devices.cancel_check();
   } else if (state != StepState::later && devices.awaits_check()) {
     ImGui::TextWrapped("%s", devices.problem().c_str());

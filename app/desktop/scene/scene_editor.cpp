@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/touch/triangle_mesh.h"
 #include "devices/files/rpy.h"
 #include "devices/files/scene/body_file.h"
 #include "devices/files/scene/scene_document.h"
@@ -71,6 +72,17 @@ Bounds bounds_of(const Object& object, const Model* model) {
         std::visit([&](const auto& shape) { return bounds(shape, pose, nullptr); }, part.shape));
   }
   return all;
+}
+
+std::optional<Ball> ball_around(const Object& object) {
+  const Mesh* const mesh = std::get_if<Mesh>(&object.shape);
+  if (mesh != nullptr && mesh->triangles) {
+    const Vec3 middle = mesh->size() * mesh->triangles->middle();
+    return Ball{mesh->stood(object.pose) * middle, mesh->size() * mesh->triangles->radius()};
+  }
+  const Bounds box = bounds_of(object, nullptr);
+  if (box.isEmpty()) return std::nullopt;
+  return Ball{box.center(), 0.5 * box.diagonal().norm()};
 }
 
 void SceneEditor::open(SceneDocument document, MeshModels models, bool saved) {

@@ -16,6 +16,13 @@ namespace limpid {
 // model.
 Bounds bounds_of(const Object& object, const Model* model);
 
+struct Ball {
+  Vec3 middle;
+  double radius;  // [m]
+};
+// Returns the ball around an object's bounds, or around the triangles of its mesh.
+std::optional<Ball> ball_around(const Object& object);
+
 // Changes the scene. Keeps numbers within the limits of a scene's file, and rotations at those that
 // a file says exactly.
 class SceneEditor {

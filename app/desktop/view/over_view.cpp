@@ -22,6 +22,27 @@ namespace {
 constexpr float kBeside = 26;  // room that a sentence needs beside the legend [em]
 constexpr float kFoot = 6;     // room for the sign of loading at the foot of the view [em]
 
+// Returns the size of notices below each other.
+ImVec2 size_of_notices(const Notices& notices, float wrap, float pad) {
+  ImVec2 all{};
+  for (const Notice& notice : notices.all()) {
+    const ImVec2 size = ImGui::CalcTextSize(notice.text.c_str(), nullptr, false, wrap);
+    all = {std::max(all.x, size.x + 2 * pad), all.y + size.y + 3 * pad};
+  }
+  return all;
+}
+
+// Adds the windows over the picture, such as cards. Tooltips come and go with the mouse.
+void keep_windows_free(Crowd& crowd) {
+  constexpr ImGuiWindowFlags kPassing = ImGuiWindowFlags_ChildWindow | ImGuiWindowFlags_Tooltip;
+  for (const ImGuiWindow* each : ImGui::GetCurrentContext()->Windows) {
+    const bool seen = each->Active && !each->Hidden && !each->IsFallbackWindow;
+    if (seen && (each->Flags & kPassing) == 0) {
+      crowd.kept_free.push_back({each->Pos, each->Rect().Max});
+    }
+  }
+}
+
 float buttons_width(const Banner& banner) {
   const ImGuiStyle& style = ImGui::GetStyle();
   float width = 0;
@@ -145,33 +166,37 @@ void NoticeSigns::draw(const Notices& notices, ScreenRect view, ScreenRect legen
   const bool beside = view.max.x - legend.max.x > kBeside * em;
   const float left = beside ? legend.max.x + em : view.min.x + pad;
   const float right = view.max.x - pad;
-  const float wrap = std::max(right - left - 2 * pad, 4 * em);
-  const auto size_of = [&](const Notice& notice) {
-    return ImGui::CalcTextSize(notice.text.c_str(), nullptr, false, wrap);
+  const float widest = std::max(right - left - 2 * pad, 4 * em);
+  // `along` and `down`: parts of the room that is left.
+  const auto place_at = [&](float wrap, float along, float down) {
+    const ImVec2 size = size_of_notices(notices, wrap, pad);
+    const float high = (beside ? view.min.y : legend.max.y) + 0.7f * em;
+    const float low = std::max(high, view.max.y - kFoot * em - size.y);
+    const ImVec2 from(std::floor(left + along * std::max(0.0f, right - size.x - left)),
+                      std::floor(high + down * (low - high)));
+    return ScreenRect{from, {from.x + size.x, from.y + size.y}};
   };
-  ImVec2 all{};
-  for (const Notice& notice : notices.all()) {
-    const ImVec2 size = size_of(notice);
-    all = {std::max(all.x, size.x + 2 * pad), all.y + size.y + 3 * pad};
-  }
-  float y = 0;
+  ScreenRect place = place_at(widest, 0.5f, 0);
   if (const ImGuiWindow* dialog = ImGui::GetTopMostPopupModal()) {
     // Below a dialog, as far as there is room, notices cover neither its title nor its buttons.
     const float last = ImGui::GetMainViewport()->WorkPos.y + ImGui::GetMainViewport()->WorkSize.y;
-    y = std::min(dialog->Pos.y + dialog->Size.y + pad, last - all.y);
+    place.min.y = std::min(dialog->Pos.y + dialog->Size.y + pad, last - place.height());
   } else {
-    const float from = std::max(left, (left + right - all.x) / 2);
-    const float high = (beside ? view.min.y : legend.max.y) + 0.7f * em;
-    const float low = view.max.y - kFoot * em - all.y;
     std::vector<ScreenRect> places;
-    for (const float top : {high, low}) {
-      if (top >= high) places.push_back({{from, top}, {from + all.x, top + all.y}});
+    for (const float wrap : {widest, std::max(widest / 2, 4 * em)}) {
+      for (const float down : {0.0f, 1.0f, 0.25f, 0.5f, 0.75f}) {
+        for (const float along : {0.5f, 0.0f, 1.0f}) places.push_back(place_at(wrap, along, down));
+      }
     }
-    y = place_.choose(places, crowd)->min.y;
+    Crowd all = crowd;
+    keep_windows_free(all);
+    place = *place_.choose(places, all);
   }
+  float y = place.min.y;
+  const float wrap = place.width() - 2 * pad + 1;  // rounding must not break a line anew
   for (const Notice& notice : notices.all()) {
-    const ImVec2 size = size_of(notice);
-    const ImVec2 at(std::max(left + pad, (left + right - size.x) / 2), y + pad);
+    const ImVec2 size = ImGui::CalcTextSize(notice.text.c_str(), nullptr, false, wrap);
+    const ImVec2 at((place.min.x + place.max.x - size.x) / 2, y + pad);
     const ImVec2 from(at.x - pad, at.y - pad), to(at.x + size.x + pad, at.y + size.y + pad);
     draw->AddRectFilled(from, to, colour(colours.raised, 0.95f), 4);
     draw->AddRect(from, to, colour(notice.bad ? colours.broken : colours.border), 4);

@@ -31,7 +31,8 @@ struct Banner {
 ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, ScreenRect signs,
                         const Act& act);
 
-// Draws notices below banners and legend, or at the foot of the view where they hide less there.
+// Draws notices below banners and legend, or elsewhere in the view where they hide less: neither
+// windows nor the crowd, as far as there is room.
 class NoticeSigns {
  public:
   void draw(const Notices& notices, ScreenRect view, ScreenRect legend, const Crowd& crowd);

@@ -116,7 +116,8 @@ std::string task_of(const SceneDocument& document) {
   return task;
 }
 
-// Returns hints of a first start, each until its step was done once, and the scene's task before.
+// Returns the scene's task, and below it the hint of a first start that comes next: each until its
+// step was done once.
 std::vector<std::string> hints(const std::string& task, const std::string& pad,
                                const Settings& settings) {
   const std::pair<FirstStep, std::string> all[] = {
@@ -129,24 +130,23 @@ std::vector<std::string> hints(const std::string& task, const std::string& pad,
       {FirstStep::law,
        "C switches the coupling. With the standard coupling, hand and world move apart."}};
   std::vector<std::string> lines;
-  // The hint of how to pull the arm comes first.
-  if (!task.empty() && done(settings, FirstStep::pull)) lines.push_back(task);
+  if (!task.empty()) lines.push_back(task);
   for (const auto& [step, line] : all) {
     // Whoever has reached something has no need to lead the tip nearer or farther.
     const bool needless = step == FirstStep::push && done(settings, FirstStep::press);
-    if (!done(settings, step) && !needless) lines.push_back(line);
+    if (done(settings, step) || needless) continue;
+    lines.push_back(line);
+    break;
   }
   return lines;
 }
 
-// Returns the place of a body in the picture: of the ball around its bounds.
+// Returns the place of a body in the picture: of the ball around it.
 std::optional<ScreenRect> seen_place(const Object& object, const Camera& camera, ScreenRect rect) {
-  const Bounds box = bounds_of(object, nullptr);
-  if (box.isEmpty()) return std::nullopt;
-  const auto pixel = camera.project(box.center());
+  const auto ball = ball_around(object);
+  const auto pixel = ball ? camera.project(ball->middle) : std::nullopt;
   if (!pixel) return std::nullopt;
-  const auto radius =
-      static_cast<float>(0.5 * box.diagonal().norm() / camera.meters_per_pixel(box.center()));
+  const auto radius = static_cast<float>(ball->radius / camera.meters_per_pixel(ball->middle));
   const ImVec2 at = in_window(rect, *pixel);
   return ScreenRect{{at.x - radius, at.y - radius}, {at.x + radius, at.y + radius}};
 }
@@ -244,7 +244,7 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
   paint(view, *drawn_, kMainLane);
   if (settings.show_lens && !scene.split()) {
     magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height, scene.words},
-                    crowd_with_signs());
+                    crowd_with_hints());
   } else {
     magnifier_.hide();
   }
@@ -303,15 +303,21 @@ void ViewPanel::see_crowd(const ViewScene& scene, const ViewState& view,
   around_.kept_free.insert(around_.kept_free.end(), scene.cards.begin(), scene.cards.end());
 }
 
-Crowd ViewPanel::crowd_with_signs() const {
+Crowd ViewPanel::crowd_with_hints() const {
   Crowd crowd = around_;
   if (hinted_) crowd.kept_free.push_back(*hinted_);
   return crowd;
 }
 
+Crowd ViewPanel::crowd_with_signs() const {
+  Crowd crowd = crowd_with_hints();
+  if (magnifier_.rect()) crowd.kept_free.push_back(*magnifier_.rect());
+  return crowd;
+}
+
 // Draws hints at the foot of the picture, or at its top if the tip is at the foot.
-void ViewPanel::draw_hints(const ViewScene& scene, const Settings& settings, ScreenRect rect,
-                           ImDrawList& list) {
+void ViewPanel::draw_hints(const ViewScene& scene, const Camera& camera, const Settings& settings,
+                           ScreenRect rect, ImDrawList& list) {
   const Palette& colours = current_palette();
   ImFont* face = font(Face::semibold);
   hinted_.reset();
@@ -346,8 +352,11 @@ void ViewPanel::draw_hints(const ViewScene& scene, const Settings& settings, Scr
   const float foot = rect.max.y - 20 * current_scale() - high + 0.5f * size;
   const std::array places{at(foot),
                           at(std::max(rect.min.y + scene.words, legend_box(rect).max.y) + size)};
-  if (hinted_in_ != std::pair(rect.width(), rect.height())) hint_place_.forget();
-  hinted_in_ = {rect.width(), rect.height()};
+  const std::pair size_now(rect.width(), rect.height());
+  const Eigen::Matrix4d looks = camera.projection() * camera.view();
+  if (hinted_in_ != size_now || hinted_by_ != looks) hint_place_.forget();
+  hinted_in_ = size_now;
+  hinted_by_ = looks;
   hinted_ = hint_place_.choose(places, around_);
   float line_y = hinted_->min.y;
   for (const std::string& line : lines) {
@@ -365,6 +374,7 @@ void ViewPanel::follow_task(const ViewScene& scene, const ViewState& view) {
   if (std::string task = task_of(scene.stage.document()); task != task_) {
     task_ = std::move(task);
     task_done_ = false;
+    hint_place_.forget();
   }
   task_done_ = task_done_ || !view.contacts.empty() || pulling_;
   magnet_broke_ = view.magnet && !view.magnet_holds && (magnet_broke_ || magnet_holds_);
@@ -394,7 +404,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   }
   magnifier_.draw_frame(view, camera, list);
   if (!scene.recorded && scene.beside.empty() && !settings.your_turn && !scene.asked) {
-    draw_hints(scene, settings, rect, list);
+    draw_hints(scene, camera, settings, rect, list);
   } else {
     hinted_.reset();
   }

@@ -72,7 +72,7 @@ class ViewPanel {
   // Returns what cards over the pictures should not cover, as drawn last: tips, what is acted on,
   // objects that move.
   const Crowd& crowd() const { return crowd_; }
-  // Returns the same with the cards and hints.
+  // Returns the same with the cards, the hints and the lens.
   Crowd crowd_with_signs() const;
   // Returns whether a drag from this pixel of the view pulls the hand.
   static bool near_tip(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel);
@@ -82,8 +82,9 @@ class ViewPanel {
  private:
   void see_crowd(const ViewScene& scene, const ViewState& view, std::span<const ViewState> beside,
                  const Camera& camera, ScreenRect rect);
-  void draw_hints(const ViewScene& scene, const Settings& settings, ScreenRect rect,
-                  ImDrawList& list);
+  Crowd crowd_with_hints() const;
+  void draw_hints(const ViewScene& scene, const Camera& camera, const Settings& settings,
+                  ScreenRect rect, ImDrawList& list);
   void draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
                   const Settings& settings, ScreenRect rect);
   void draw_pictures(const ViewScene& scene, const Camera& camera, const Settings& settings,
@@ -110,10 +111,12 @@ class ViewPanel {
   Magnifier magnifier_;
   Crowd crowd_, around_;  // without and with the cards
   FreePlace hint_place_;
-  std::pair<float, float> hinted_in_;  // size of the picture that the place was chosen in [px]
-  std::optional<ScreenRect> hinted_;   // place of the hints in the last frame
-  std::string task_;                   // sentence of the scene that is shown
-  bool task_done_ = false;             // something of it was touched since, or pulled on
+  // Size of the picture that the place was chosen in [px], and its camera.
+  std::pair<float, float> hinted_in_;
+  Eigen::Matrix4d hinted_by_ = Eigen::Matrix4d::Identity();
+  std::optional<ScreenRect> hinted_;  // place of the hints in the last frame
+  std::string task_;                  // sentence of the scene that is shown
+  bool task_done_ = false;            // something of it was touched since, or pulled on
   bool magnet_on_ = false, magnet_holds_ = false;
   bool magnet_broke_ = false;        // it is on, and lost what it held
   std::optional<ScreenRect> drawn_;  // place of the view

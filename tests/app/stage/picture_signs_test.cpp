@@ -222,6 +222,34 @@ TEST_F(SignsOfAPicture, RingTheDevicesTipWithTheForceOfTheHandThatHoldsIt) {
   EXPECT_FALSE(has({tip.x + 1.3f * em(), tip.y}, hand()));
 }
 
+// The hand is near an edge of the picture, in a corner, or beyond.
+TEST_F(SignsOfAPicture, SayAForceWholeWithinThePictureAndBesideTheHand) {
+  view_.hand_force = Vec3(3, 0, 4);
+  view_.hand_grips = true;
+  for (const double x : {-60.0, 2.0, 200.0, 398.0, 460.0}) {
+    for (const double y : {-60.0, 2.0, 150.0, 298.0, 360.0}) {
+      SCOPED_TRACE(testing::Message() << x << ", " << y);
+      const Vec3 hand = camera_.plane_drag({x, y}, Vec3::Zero());
+      view_.device.tip = hand;
+      view_.pull = {Vec3::Zero(), hand};
+      const auto texts = draw([&](ImDrawList& list) {
+        draw_grasp(view_, camera_, picture_, list);
+        draw_pull(view_, 5, camera_, picture_, list);
+      });
+      ASSERT_EQ(texts.size(), 2u);
+      for (const test::DrawnText& each : texts) {
+        EXPECT_EQ(each.text, "5.0 N");
+        EXPECT_TRUE(picture_.contains(each.min) && picture_.contains(each.max))
+            << each.min.x << ", " << each.min.y << " to " << each.max.x << ", " << each.max.y;
+        const ImVec2 at = seen(hand);
+        const bool over = each.max.x > at.x - em() && each.min.x < at.x + em() &&
+                          each.max.y > at.y - em() && each.min.y < at.y + em();
+        EXPECT_FALSE(over);
+      }
+    }
+  }
+}
+
 TEST_F(SignsOfAPicture, KeepTipsAndWhatIsPulledFree) {
   view_.device.tip = Vec3(0.1, 0, 0);
   view_.proxy.tip = Vec3(-0.1, 0, 0);

@@ -58,6 +58,30 @@ TEST_F(TheDevicesCard, SaysWhatTheCheckOfItsAxesDoes) {
   EXPECT_TRUE(until(says_it)) << words(kSidePanel) << sentences("##Tooltip");
 }
 
+// The device never moves: its first axis is pushed until the check gives up.
+TEST_F(TheDevicesCard, DrawsWhichWayTheCheckOfItsAxesPushes) {
+  static constexpr DeviceKind kOmni{
+      .key = "test", .name = "Test", .pushes = true, .arm = "omni.urdf"};
+  FoundDevice found;
+  found.place = {"A device", "device", ""};
+  found.kind = &kOmni;
+  found.open = [](const FoundDevice&, const PidSettings&, const AskForPriority&,
+                  DeviceClaim) -> std::unique_ptr<Device> {
+    return std::make_unique<test::WiredDevice>(3, std::make_shared<test::Wire>());
+  };
+  found.claim_key = [](const FoundDevice&) { return std::string("a device of this test"); };
+  const auto drawn = [&] {
+    desktop->devices.hub().take({found});  // it is in no list of real devices
+    if (desktop->devices.awaits_check()) desktop->devices.start_check();
+    frames(1);
+    return find("from above", kSidePanel) && find("y left", kSidePanel);
+  };
+  EXPECT_TRUE(until(drawn)) << words(kSidePanel);
+  EXPECT_THAT(says(), HasSubstr("checking axis 1"));
+  desktop->devices.cancel_check();
+  EXPECT_TRUE(until([&] { return desktop->devices.check() == nullptr; }));
+}
+
 TEST_F(TheDevicesCard, SaysWhatIsAssumedAndLeadsToTheIdentification) {
   plug_in();
   const std::string said = says();
@@ -97,7 +121,7 @@ TEST_F(TheDevicesCard, SaysWhatWasMeasuredAndReckonsWithIt) {
 
 TEST_F(TheDevicesCard, SaysWhyThereIsNoForce) {
   const auto wire = plug_in();
-  EXPECT_THAT(hint("Its arm: omni", kSidePanel), HasSubstr("limits the force"));
+  EXPECT_THAT(hint("Its arm: omni", kSidePanel), HasSubstr("set the limits of the force"));
   EXPECT_TRUE(until([&] {
     if (!desktop->live.force_armed()) desktop->live.loop().arm();
     return desktop->live.loop().snapshot().arming == Arming::on;

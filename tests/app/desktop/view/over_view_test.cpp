@@ -140,5 +140,39 @@ TEST_F(SignsOverThePicture, TellNoticesAtTheFootWhereATipIsAtTheTop) {
   }
 }
 
+TEST_F(SignsOverThePicture, TellNoticesBesideTipLensAndCardsWhereThereIsRoom) {
+  Notices notices;
+  notices.say(
+      "A recording could not be completed, as the disk is full; what is there stays where it is, "
+      "and can be recovered once there is room.");
+  view_ = {{450, 50}, {1550, 700}};
+  const ScreenRect legend{view_.min, {610, 130}};
+  const ScreenRect tip{{950, 60}, {1010, 120}}, lens{{1290, 440}, {1543, 693}};
+  const ScreenRect card{{623, 160}, {923, 480}};
+  NoticeSigns signs;
+  for (const bool with_card : {false, true}) {
+    show([&] {
+      if (with_card) {
+        ImGui::SetNextWindowPos(card.min);
+        ImGui::SetNextWindowSize(card.size());
+        ImGui::Begin("card", nullptr, ImGuiWindowFlags_NoDecoration);
+        ImGui::End();
+      }
+      signs.draw(notices, view_, legend, {{tip, lens}, {}});
+    });
+    ASSERT_FALSE(test::drawn_texts().empty());
+    for (const test::DrawnText& each : test::drawn_texts()) {
+      const ScreenRect rect{each.min, each.max};
+      expect_in_view(rect);
+      EXPECT_TRUE(apart(rect, legend)) << each.text;
+      EXPECT_TRUE(apart(rect, tip)) << each.text;
+      EXPECT_TRUE(apart(rect, lens)) << each.text;
+      if (with_card) {
+        EXPECT_TRUE(apart(rect, card)) << each.text;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limpid

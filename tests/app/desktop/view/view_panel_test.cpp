@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <optional>
 
+#include "app/desktop/base/first_steps.h"
 #include "core/dynamics/arm.h"
 #include "tests/app/plot/imgui_frames.h"
 #include "tests/support/built_in.h"
 #include "tests/support/computer.h"
 #include "tests/support/drawn_text.h"
 #include "tests/support/faultless_context.h"
+#include "tests/support/meshes.h"
 
 namespace limpid {
 namespace {
@@ -19,9 +21,7 @@ class AView : public ImGuiFrames {
   void SetUp() override {
     if (!test::has_offscreen_pictures()) GTEST_SKIP() << "no EGL here";
     context_.emplace(400, 300);
-    History history({.channels = TraceChannels(layout_).count(), .seconds = 1, .tick = 0.01});
-    stage_ =
-        std::make_unique<Stage>(test::omni(), SceneDocument{}, MeshModels{}, std::move(history), 1);
+    open({});
     const Eigen::VectorXd rest = rest_pose(test::omni());
     for (const Column c : {Column::device_position, Column::proxy_position}) {
       std::ranges::copy(rest, layout_.in(std::span(row_), c).begin());
@@ -29,8 +29,18 @@ class AView : public ImGuiFrames {
     camera_.reset(stage_->picture.bounds());
     camera_.finish();
   }
+  void open(const SceneDocument& document) {
+    History history({.channels = TraceChannels(layout_).count(), .seconds = 1, .tick = 0.01});
+    stage_ = std::make_unique<Stage>(test::omni(), document, MeshModels{}, std::move(history), 1);
+  }
+  // Returns whether the picture says this in a line of its own.
+  static bool says(const std::string& line) {
+    return std::ranges::any_of(test::drawn_texts(), [&](const test::DrawnText& each) {
+      return each.text.starts_with(line);
+    });
+  }
   ViewScene scene() {
-    ViewScene all{.stage = *stage_, .row = row_, .pixel_height = 600};
+    ViewScene all{.stage = *stage_, .row = row_, .selected = selected_, .pixel_height = 600};
     all.grasp = [this](const Ray&) { return under_; };
     all.aim = [this](const Ray& ray) { return aim_along(ray, objects_, {}); };
     return all;
@@ -73,6 +83,7 @@ class AView : public ImGuiFrames {
   ScreenRect rect_{{0, 0}, {400, 300}};
   bool taken_ = false;
   std::optional<BodyPull> under_;
+  std::optional<Object> selected_;
   Scene objects_;
   ViewRequest asked_;
   Settings settings_;
@@ -136,8 +147,7 @@ TEST_F(AView, NamesWhatTheMouseRestsOnWithItsMassUnlessThatIsItsName) {
     document.scene.add(ball);
   }
   objects_ = document.scene;
-  History history({.channels = TraceChannels(layout_).count(), .seconds = 1, .tick = 0.01});
-  stage_ = std::make_unique<Stage>(test::omni(), document, MeshModels{}, std::move(history), 1);
+  open(document);
   point({5, 5});
   const auto named_at = [&](const Vec3& place) {
     point(seen(place));
@@ -348,6 +358,66 @@ TEST_F(AView, PushesTheHandWithTheWheel) {
   EXPECT_NEAR(depth(), -one, 1e-6);
   EXPECT_EQ(camera_.distance(), distance) << "it does not zoom meanwhile";
   press(0, false);
+}
+
+TEST(ScenesToTouch, TellATaskWithTheMouse) {
+  for (const char* scene : {"table.toml", "obstacles.toml", "proximal.toml"}) {
+    EXPECT_TRUE(test::omni_document(scene).about.starts_with("Drag the tip")) << scene;
+  }
+}
+
+TEST_F(AView, TellsTheTaskAndTheNextStepUntilSomethingIsTouched) {
+  rect_ = {{0, 0}, {800, 600}};
+  SceneDocument document;
+  document.about = "Ring the bell.";
+  open(document);
+  draw();
+  EXPECT_TRUE(says("Ring the bell.")) << "from the start";
+  EXPECT_TRUE(says("Drag the arm by its tip"));
+  EXPECT_FALSE(says("Turn the wheel")) << "one step at a time";
+  note_done(settings_, FirstStep::pull);
+  draw();
+  EXPECT_TRUE(says("Ring the bell."));
+  EXPECT_FALSE(says("Drag the arm by its tip"));
+  EXPECT_TRUE(says("Turn the wheel"));
+  layout_.in(std::span(row_), Column::contact_force)[2] = 1;
+  draw();
+  EXPECT_FALSE(says("Ring the bell."));
+  EXPECT_TRUE(says("Turn the wheel"));
+}
+
+// A ball of triangles whose middle is not its object's place.
+TEST_F(AView, TellsHintsBesideAMesh) {
+  rect_ = {{0, 0}, {800, 600}};
+  draw();
+  ASSERT_TRUE(panel_.hinted());
+  const ImVec2 low = panel_.hinted()->min, high = panel_.hinted()->max;
+  const ImVec2 middle{(low.x + high.x) / 2, (low.y + high.y) / 2};
+  const Vec3 aside(3, 0, 0);
+  Object ball =
+      test::obstacle(test::icosphere(1).mapped([&](const Vec3& v) -> Vec3 { return v + aside; }));
+  test::mesh_of(ball).unit = 0.1;
+  ball.pose.translation() = camera_.plane_drag({middle.x, middle.y}, tip()) - 0.1 * aside;
+  selected_ = ball;
+  draw();
+  ASSERT_TRUE(panel_.hinted());
+  EXPECT_FALSE(panel_.hinted()->contains(middle));
+}
+
+TEST_F(AView, KeepsNoticesOffTheLens) {
+  rect_ = {{0, 0}, {800, 600}};
+  layout_.in(std::span(row_), Column::proxy_position)[0] += 0.02;
+  settings_.show_lens = false;
+  draw();
+  const std::size_t without = panel_.crowd_with_signs().kept_free.size();
+  settings_.show_lens = true;
+  draw();
+  const std::vector<ScreenRect> kept = panel_.crowd_with_signs().kept_free;
+  ASSERT_EQ(kept.size(), without + 1);
+  EXPECT_GT(kept.back().width(), 64);
+  EXPECT_EQ(kept.back().width(), kept.back().height());
+  EXPECT_FALSE(kept.back().contains(
+      {static_cast<float>(seen(tip()).x()), static_cast<float>(seen(tip()).y())}));
 }
 
 }  // namespace
