@@ -22,13 +22,13 @@ void print_outcome(const std::string& name, const Outcome& outcome) {
     if (told) continue;
     const char* verdict = !c.unjudged.empty() ? "----" : c.passed ? "ok  " : "FAIL";
     fmt::print("  {}  {}: {:.4g}", verdict, c.what, c.value);
-    if (c.unjudged.empty()) fmt::print(", {} {:.4g}", relation(c), c.bound);
+    if (c.unjudged.empty()) fmt::print(" {} {:.4g}", c.least ? ">=" : "<=", c.bound);
     if (elsewhere && !c.unjudged.empty()) {
       fmt::print(" ({}; promised for the built-in arm: {} {:.4g})",
                  std::isnan(c.value) ? "not measurable"
                  : c.passed          ? "kept"
                                      : "missed",
-                 c.least ? "at least" : "at most", c.bound);
+                 c.least ? ">=" : "<=", c.bound);
     }
     if (c.against && c.against->expected) {
       fmt::print("; {:.6g} {} for {:.6g}", c.against->measured, c.against->unit,

@@ -18,6 +18,14 @@ struct SettingsFrom {
 };
 
 // Rows of a re-run.
+// Figures by which people compare runs, as Summary has them.
+struct RunFigures {
+  std::string name;
+  double error = 0, contact = 0;  // largest |x_E| and |f2|, in the units below
+  double energy = 0;              // highest E_c [J]
+  const char *error_unit = "mrad", *contact_unit = "N m";
+};
+
 struct RerunRows {
   ArmDescription arm;
   LargeVector<double> rows;            // as many as the session's; none if it was stopped
@@ -27,7 +35,8 @@ struct RerunRows {
   std::vector<std::string> cautions;   // RunWatch::cautions()
   std::string name;                    // "re-run: predictive", by what was changed
   std::string recorded;                // "recorded: standard", the first run's name beside it
-  std::string note;                    // why it may differ from the recording; for people
+  RunFigures figures, recorded_figures;
+  std::string note;  // why it may differ from the recording; for people
 };
 
 // Runs the session's hand again under `chosen` for all settings that may change. Tells `at` the

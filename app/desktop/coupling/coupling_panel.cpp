@@ -175,8 +175,8 @@ void law_choice(Parameters& p, bool for_comparison) {
 // Returns whether few people change the parameter: those that tie device and proxy, and its energy.
 bool advanced(std::string_view key) {
   return key == "coupling.k_vc" || key == "coupling.b_vc" || key == "coupling.b_v" ||
-         key == "coupling.band" || key == "ledger.energy" || key == "tank.energy" ||
-         key == "tank.damping";
+         key == "coupling.per_joint" || key == "coupling.band" || key == "ledger.energy" ||
+         key == "tank.energy" || key == "tank.damping";
 }
 bool of_link(std::string_view key) { return key.starts_with("link."); }
 
@@ -233,9 +233,12 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   const bool asked = has_conditions(law) || (law.solves_together && !p.linked());
   const std::string device = asked ? device_broken(p, a) : "";
   const std::string proxy = asked ? proxy_broken(p, a) : "";
+  const Eigen::VectorXd b_d = device_damping(arm, p);
+  const bool all_alike = b_d.minCoeff() == b_d.maxCoeff();
   const auto draw = [&](bool which) {
     for (const std::string_view key : info(p.kind).sliders) {
       if (advanced(key) != which || of_link(key)) continue;
+      if (key == "coupling.per_joint" && all_alike && !p.per_joint) continue;
       const bool of_device = key == "coupling.k_vc" || key == "coupling.b_vc";
       if (key == "coupling.eta") {
         eta_slider(p, a);
@@ -436,6 +439,37 @@ void draw_differences(Parameters& p, const RecordedCoupling& recording, const Pa
   if (ImGui::Button("Take mine", {half, 0})) p = live;
   note_place("Take mine");
   tooltip("Uses all settings of the live loop for the re-run.");
+  ImGui::Spacing();
+}
+
+// Draws what came of the re-runs so far, a line each, the recording first.
+void draw_tried(std::span<const RunFigures> tried) {
+  if (tried.empty() || !ImGui::BeginTable("tried", 4, ImGuiTableFlags_BordersInnerH)) return;
+  ImGui::TableSetupColumn("run", ImGuiTableColumnFlags_WidthStretch);
+  for (const char* column : {"error", "contact", "E_c"}) {
+    ImGui::TableSetupColumn(column, ImGuiTableColumnFlags_WidthFixed);
+  }
+  const auto cell = [](const std::string& text, const char* help = nullptr) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(text.c_str());
+    if (help != nullptr) tooltip(help);
+  };
+  const RunFigures& first = tried.front();
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  cell("Run");
+  cell(fmt::format("error\n{}", first.error_unit),
+       "Largest distance between device and proxy, |x_E|");
+  cell(fmt::format("contact\n{}", first.contact_unit), "Largest contact force on the proxy, |f2|");
+  cell("E_c\nmJ", "Highest controller energy E_c");
+  for (const RunFigures& run : tried) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextWrapped("%s", run.name.c_str());
+    for (const double value : {run.error, run.contact, 1e3 * run.energy}) {
+      cell(fmt::format("{:.3g}", value));
+    }
+  }
+  ImGui::EndTable();
   ImGui::Spacing();
 }
 
@@ -665,6 +699,7 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
 void draw_coupling_of_rerun(Parameters& p, const RecordedCoupling& recording,
                             const Parameters& live, const CouplingSituation& now) {
   draw_differences(p, recording, live);
+  draw_tried(recording.tried);
   law_choice(p, now.everything);
   ImGui::Spacing();
   if (!now.everything) return draw_eta(p, now.analysis);

@@ -1,6 +1,7 @@
 // Panel of the coupling: its law, its parameters, and whether it is passive.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "app/plot/plot_frame.h"
 #include "app/plot/trace_channels.h"
 #include "app/run/analysis.h"
+#include "app/run/rerun.h"
 
 namespace limpid {
 
@@ -51,6 +53,7 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
 struct RecordedCoupling {
   const Parameters& began;
   std::vector<std::string> changed;
+  std::span<const RunFigures> tried{};  // the recording and its re-runs; empty before the first one
 };
 // Draws the parameters for the next re-run of a recording; `live`: the loop's own.
 void draw_coupling_of_rerun(Parameters& p, const RecordedCoupling& recording,

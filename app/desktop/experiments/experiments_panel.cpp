@@ -46,8 +46,7 @@ void draw_checks(const std::vector<Check>& checks) {
     ImGui::TableNextColumn();
     ImGui::TextWrapped("%s", check.what.c_str());
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
-    ImGui::TextWrapped("%.4g, %s %.4g", check.value, check.least ? "at least" : "at most",
-                       check.bound);
+    ImGui::TextWrapped("%.4g %s %.4g", check.value, check.least ? "\u2265" : "\u2264", check.bound);
     for (const std::string& words :
          {check.against ? check.against->conditions : "", check.unjudged}) {
       if (!words.empty()) ImGui::TextWrapped("%s", words.c_str());

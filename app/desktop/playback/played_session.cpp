@@ -185,9 +185,16 @@ void PlayedSession::show(Rerun again) {
   RunNames names{{again.run.recorded, again.run.name}, false};
   if (!rows.empty()) {
     const auto first = rows.first(static_cast<std::size_t>(layout.stride()));
-    names.laws = {-1, static_cast<int>(layout.in(first, Column::kind)[0])};
+    names.laws = {laws_at(player_.session(), 0).front(),
+                  static_cast<int>(layout.in(first, Column::kind)[0])};
   }
   stage_->name_runs(names);
+  if (!rows.empty()) {
+    constexpr std::size_t kMostTried = 8;
+    if (tried_.empty()) tried_.push_back(again.run.recorded_figures);
+    if (tried_.size() == kMostTried) tried_.erase(tried_.begin() + 1);
+    tried_.push_back(again.run.figures);
+  }
   rerun_ = std::move(again.run.rows);
   changes_of_rerun_ = std::move(again.changes);
   show(std::move(marks_));

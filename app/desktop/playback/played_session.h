@@ -116,6 +116,9 @@ class PlayedSession {
   bool has_rerun() const { return !rerun_.empty(); }
   // Returns the settings that the re-run changed, as "coupling.eta=0.5".
   const std::vector<std::string>& changes_of_rerun() const { return changes_of_rerun_; }
+  // Returns the figures of the recording and of the last re-runs, the newest last; empty before the
+  // first one.
+  const std::vector<RunFigures>& tried() const { return tried_; }
   // Returns the re-run's row at the player's time; empty without one.
   std::span<const double> rerun_row() const;
   // Returns the rows of all lanes at the player's time; the first one's alone beside a re-run.
@@ -135,6 +138,7 @@ class PlayedSession {
   std::vector<RecordedSettings> lanes_;
   LargeVector<double> rerun_;  // rows of the re-run; may be empty
   std::vector<std::string> changes_of_rerun_;
+  std::vector<RunFigures> tried_;
   std::unique_ptr<Stage> stage_;
 };
 

@@ -232,7 +232,7 @@ void live_controls(LiveStage& live, double tick, double& plot_length, const Act&
     act("coupling.next");
   }
   PlotGroup& group = live.stage().group;
-  if (button(group.following() ? "Freeze plots" : "Follow", "Stops or continues the plots (X).",
+  if (button(group.following() ? "Freeze plots" : "Follow", "Freezes the plots, or lets them follow (X).",
              !group.following())) {
     act("plots.freeze");
   }

@@ -392,8 +392,10 @@ bool Desktop::only_plays() const {
   return playback.on() && nothing_before && !may_move();
 }
 
+// Returns whether a real device has force, or is about to.
 bool Desktop::may_move() const {
-  return live.loop().device_in_place() || devices.check() != nullptr || identify.moving();
+  const bool armed = live.loop().device_in_place() && live.force_armed();
+  return armed || devices.check() != nullptr || identify.moving();
 }
 
 void Desktop::cut_or_play() {

@@ -236,8 +236,8 @@ bool Frame::chatters(std::size_t lane) {
   const std::vector<Parameters> settings = played->lane_settings();
   if (lane >= settings.size()) return false;
   return played_chatter_[lane].there(stage.history, played->player().index(),
-                                     stage.channels().lane(lane).first, stage.arm().dof(),
-                                     settings[lane].k_vc);
+                                     stage.channels().lane(lane).first,
+                                     coupling_springs(stage.arm(), settings[lane]));
 }
 
 void Frame::draw_coupling(ScreenRect rect) {
@@ -312,7 +312,7 @@ void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
     }
   }
   if (section("Settings of the re-run (E)", true)) {
-    RecordedCoupling recording{session.began_with(), {}};
+    RecordedCoupling recording{session.began_with(), {}, session.tried()};
     for (const SettingChange& change : session.player().session().changes) {
       recording.changed.emplace_back(change.key());
     }

@@ -98,8 +98,9 @@ float least_status_width(const LiveLoop& loop) { return status_width(force_part(
 
 void draw_status(const LiveLoop& loop, const StatusLaw& law, const StatusGoing& going) {
   std::vector<StatusPart> parts = status_parts(loop, law, going);
-  if (going.played.empty() || loop.device_in_place()) {
-    parts.push_back(force_part(loop.snapshot()));
+  const Snapshot now = loop.snapshot();
+  if (going.played.empty() || (loop.device_in_place() && now.armed())) {
+    parts.push_back(force_part(now));
   } else {
     parts.push_back(
         {"space plays [Esc: live]", current_palette().muted,

@@ -109,7 +109,7 @@ TEST_F(Work, OfAnExperimentLeavesAReport) {
   EXPECT_THAT(
       said,
       StartsWith("inertia: passed\n  ok    rms human torque at eta = 0.6: relative deviation"));
-  EXPECT_THAT(said, HasSubstr(", at most 0.1\n"));
+  EXPECT_THAT(said, HasSubstr(" <= 0.1\n"));
   EXPECT_THAT(said, EndsWith("report: found/report.html\n"));
   EXPECT_THAT(text_of("found/report.html"), HasSubstr("1 of 1 experiments passed"));
   for (const char* end : {"csv", "png", "svg", "json"}) {
@@ -141,7 +141,7 @@ TEST_F(Work, OfAnExperimentTakesAnArm) {
                                  "--set", "coupling.k_vc=10", "--out", "found"});
   EXPECT_THAT(said, StartsWith("inertia, on touch with its readings and coupling.k_vc=10: measured"
                                "\n  ----  rms human torque at eta = 0.6: relative deviation"));
-  EXPECT_THAT(said, HasSubstr(" (missed; promised for the built-in arm: at most 0.1)\n"));
+  EXPECT_THAT(said, HasSubstr(" (missed; promised for the built-in arm: <= 0.1)\n"));
   EXPECT_THAT(done({"experiment", "inertia", "--device", "omni.urdf", "--out", "same"}),
               StartsWith("inertia: passed\n"))
       << "the built-in arm by its file";

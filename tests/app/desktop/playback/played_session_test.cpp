@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/plot/trace_channels.h"
@@ -48,6 +49,27 @@ TEST_F(RunAgain, UnderTheSameSettingsIsTheSame) {
   EXPECT_EQ(test::first_difference(rows, test::rows_of(session_)), -1);
   EXPECT_EQ(again.history.end(), session_.size());
   EXPECT_EQ(progress_.part, 1);
+}
+
+TEST_F(RunAgain, HasFiguresToCompareItBy) {
+  chosen_.k_vc = 20;
+  const Rerun again = run();
+  double error = 0, energy = -HUGE_VAL;
+  const auto stride = static_cast<std::size_t>(session_.layout.stride());
+  for (std::size_t k = 0; k < session_.size(); ++k) {
+    const auto row = std::span<const double>(again.run.rows).subspan(k * stride, stride);
+    const auto x1 = session_.layout.in(row, Column::device_position);
+    const auto x2 = session_.layout.in(row, Column::proxy_position);
+    double square = 0;
+    for (std::size_t i = 0; i < x1.size(); ++i) square += (x1[i] - x2[i]) * (x1[i] - x2[i]);
+    error = std::max(error, std::sqrt(square));
+    energy = std::max(energy, session_.layout.in(row, Column::energy_total)[0]);
+  }
+  EXPECT_NEAR(again.run.figures.error, 1e3 * error, 1e-9);
+  EXPECT_NEAR(again.run.figures.energy, energy, 1e-12);
+  EXPECT_NE(again.run.recorded_figures.error, again.run.figures.error);
+  chosen_ = session_parameters(session_, "a.h5");
+  EXPECT_EQ(run().run.figures.error, again.run.recorded_figures.error) << "as recorded";
 }
 
 // The second run diverges long before its end: from then on it keeps its last row.

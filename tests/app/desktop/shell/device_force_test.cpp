@@ -55,6 +55,24 @@ TEST_F(ADesktop, LeavesARealDeviceOffWhateverElseIsDone) {
   expect_off("going back to live");
 }
 
+// A device without force leaves the keys to the player.
+TEST_F(ADesktop, PlaysByItsKeysBesideADeviceWithoutForce) {
+  const auto wire = plug_in(3);
+  const std::unique_ptr<ImGuiContext, decltype(&ImGui::DestroyContext)> no_menu(
+      ImGui::CreateContext(), &ImGui::DestroyContext);
+  desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  const bool playing = desktop->playback.shown()->player().playing();
+  desktop->cut_or_play();
+  EXPECT_NE(desktop->playback.shown()->player().playing(), playing);
+  desktop->escape();
+  EXPECT_FALSE(desktop->playback.on());
+  EXPECT_EQ(wire->torque, 0);
+  ASSERT_TRUE(armed());
+  desktop->cut_or_play();
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; })) << "live the key cuts";
+}
+
 // The scene that the device would push into is not on the screen then.
 TEST_F(ADesktop, HasNoForceOnARealDeviceWhileARecordingIsShown) {
   const auto wire = pushed();

@@ -524,7 +524,7 @@ TEST_F(Dialog, OfExperimentsListsThemAndRunsOne) {
   ASSERT_TRUE(until([&] { return said("inertia: passed"); }));
   frames(4);
   const std::string verdict = words();
-  for (const char* head : {", at most 0.02", "passed", "Trials, to open in playback"}) {
+  for (const char* head : {" \u2264 0.02", "passed", "Trials, to open in playback"}) {
     EXPECT_THAT(verdict, HasSubstr(head));
   }
 }
