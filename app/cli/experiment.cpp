@@ -188,6 +188,7 @@ void keep_trials(const std::vector<const LiveExperiment*>& wanted,
 // Functions that lead the hand through a trial of a live experiment, recorded in `folder`.
 LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
   LiveLaboratory lab{bench.plan().arm, bench.plan().document, bench.plan().parameters, {}, {}};
+  lab.parameters.per_joint = false;  // what is expected is of gains of all joints alike
   lab.run = [&bench, folder](const LiveTrial& trial) {
     fs::create_directories(folder);
     const LiveTask task{trial.instruction, trial.seconds, folder / (trial.name + ".h5"), true};

@@ -19,6 +19,7 @@ std::string ExperimentArm::gains() const {
 ExperimentArm built_in_arm() {
   ExperimentArm on{read_urdf(default_device()), {}};
   on.settings = fitted(on.description);
+  on.settings.per_joint = false;  // closed forms are for gains of all joints alike
   return on;
 }
 

@@ -21,15 +21,16 @@ bool stable(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d, const Parame
             const Eigen::MatrixXd& K_h, const Eigen::MatrixXd& B_h, double eta) {
   const Eigen::Index n = M_L.rows();
   const Eigen::MatrixXd W = M_L.inverse(), I = Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd weights = gain_weights(p, b_d).asDiagonal();
   const double spring = p.k_vc / (p.b_v + p.b_vc), drag = p.b_vc / (p.b_v + p.b_vc);
   const double k = p.k_vc - p.b_vc * spring, b = p.b_vc - p.b_vc * drag;
-  const Eigen::MatrixXd D = Eigen::MatrixXd(b_d.asDiagonal()) + B_h + b * I;
+  const Eigen::MatrixXd D = Eigen::MatrixXd(b_d.asDiagonal()) + B_h + b * weights;
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4 * n, 4 * n);  // x1, v1, f_hat, x2
   A.block(0, n, n, n) = I;
-  A.block(n, 0, n, n) = -W * (K_h + k * I);
+  A.block(n, 0, n, n) = -W * (K_h + k * weights);
   A.block(n, n, n, n) = -W * D;
   A.block(n, 2 * n, n, n) = (1 - eta) / eta * W;
-  A.block(n, 3 * n, n, n) = k * W;
+  A.block(n, 3 * n, n, n) = k * W * weights;
   A.block(2 * n, 0, n, n) = -p.alpha * W * K_h;
   A.block(2 * n, n, n, n) = -p.alpha * W * B_h;
   A.block(2 * n, 2 * n, n, n) = -p.alpha * W;
@@ -72,7 +73,8 @@ struct Held {
 Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const Parameters& p) {
   const ArmAt arm = arm_at(description, x);
   const Eigen::MatrixXd JJ = arm.J.transpose() * arm.J;
-  const Eigen::VectorXd b = device_damping(description, p).array() + p.b_v;
+  const Eigen::VectorXd b_d = device_damping(description, p),
+                        b = b_d + p.b_v * gain_weights(p, b_d);
   return {(1 + p.inertia_ratio) * arm.M, b, p.hand_stiffness * JJ, p.hand_damping * JJ};
 }
 
@@ -131,6 +133,10 @@ Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p) {
 
 Eigen::VectorXd device_friction(const ArmDescription& arm, const Parameters& p) {
   return of_joints(arm, &Joint::friction, p.friction);
+}
+
+Eigen::VectorXd coupling_springs(const ArmDescription& arm, const Parameters& p) {
+  return p.k_vc * gain_weights(p, device_damping(arm, p));
 }
 
 double device_delay(const ArmDescription& arm, const Parameters& p) {

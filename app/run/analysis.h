@@ -61,6 +61,9 @@ Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);
 // Returns the Coulomb friction of every joint, likewise [N m].
 Eigen::VectorXd device_friction(const ArmDescription& arm, const Parameters& p);
 
+// Returns the coupling's spring of every joint [N m/rad].
+Eigen::VectorXd coupling_springs(const ArmDescription& arm, const Parameters& p);
+
 // Returns the delay from a reading to the torque that answers it, beyond the tick [s]: as measured
 // on the arm, else by model.delay or the virtual arm's device.delay.
 double device_delay(const ArmDescription& arm, const Parameters& p);

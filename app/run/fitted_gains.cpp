@@ -62,6 +62,10 @@ double wanted_damping(const ArmDescription& arm, double tick) {
   return up(std::min(wanted, 2 * modes[0] / tick));
 }
 
+bool same_springs(const Parameters& a, const Parameters& b) {
+  return a.k_vc == b.k_vc && a.b_vc == b.b_vc && a.b_v == b.b_v;
+}
+
 bool same(const Parameters& a, const Parameters& b, const char* key) {
   const ParameterInfo& info = *find_parameter(key);
   return parameter_text(a, info) == parameter_text(b, info);
@@ -72,7 +76,8 @@ bool same(const Parameters& a, const Parameters& b, const char* key) {
 Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double delay,
                   const LinkSettings& link) {
   Parameters p;
-  double b_d = device_damping(arm, p).minCoeff();
+  const Eigen::VectorXd of_joints = device_damping(arm, p);
+  double b_d = of_joints.minCoeff();
   const bool suits =
       condition3(p, p.tick, std::span(&b_d, 1), delay, link).holds && b_d <= kAmple * kPaperDamping;
   if (suits) return p;
@@ -84,6 +89,8 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double de
     set(p, "device.damping", wanted_damping(arm, chosen.tick));
     b_d = p.damping;
   }
+  const bool least_fits = std::isnan(p.damping) && b_d == of_joints.minCoeff();
+  p.per_joint = least_fits && of_joints.maxCoeff() > b_d && same_springs(chosen, {});
   // Gains follow (3) for packets that are `old` [s], and velocities that count `again` times more.
   const double old = link.oldest() * chosen.tick, again = 0.5 * link.link_jitter;
   set(p, "coupling.b_vc", down(b_d / (12 + 6 * again)));
@@ -137,8 +144,12 @@ std::string fit_text(const Parameters& own) {
   for (const char* key : kFittedKeys) {
     if (same(own, paper, key)) continue;
     const ParameterInfo& info = *find_parameter(key);
-    text += fmt::format("{}{} {:.3g} {}", text.empty() ? "" : ", ", key,
-                        parameter_number(own, info), info.unit);
+    text += text.empty() ? "" : ", ";
+    if (std::string_view(key) == "coupling.per_joint") {
+      text += "gains that grow with each joint's damping";
+    } else {
+      text += fmt::format("{} {:.3g} {}", key, parameter_number(own, info), info.unit);
+    }
   }
   return text;
 }
@@ -148,8 +159,10 @@ void refit(Parameters& p, const ArmDescription* before, const ArmDescription* no
   paper.tick = p.tick;
   const Parameters own = now != nullptr ? fitted(*now, paper) : paper;
   const Parameters old = before != nullptr ? fitted(*before, paper) : paper;
+  const bool own_springs = !same_springs(p, paper) && !same_springs(p, old);
   for (const char* key : kFittedKeys) {
     if (!same(p, paper, key) && !same(p, old, key)) continue;
+    if (own_springs && std::string_view(key) == "coupling.per_joint") continue;
     const ParameterInfo& info = *find_parameter(key);
     set_parameter_number(p, info, parameter_number(own, info));
   }

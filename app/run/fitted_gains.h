@@ -2,9 +2,10 @@
 //
 // All of them depend on the device's damping b_d and its delay t_d. With b_vc = b_d/12, k_vc =
 // 10/12 b_d/(T + 3/2 t_d) and b_v = b_d condition (3) holds with an equals sign, as for the
-// paper's. With alpha = 35/12 b_d eta_min of (25) is the paper's 0.59. An arm whose file says no
-// damping gets one that slows it as fast as the built-in arm's does. It gets less where that would
-// stop its lightest joint within a tick.
+// paper's. Where the joints' damping differs, b_d is the least, and the gains grow with it. With
+// alpha = 35/12 b_d eta_min of (25) is the paper's 0.59. An arm whose file says no damping gets one
+// that slows it as fast as the built-in arm's does. It gets less where that would stop its lightest
+// joint within a tick.
 #pragma once
 
 #include <array>
@@ -15,12 +16,13 @@
 
 namespace limpid {
 
-inline constexpr std::array kFittedKeys{"coupling.k_vc", "coupling.b_vc", "coupling.b_v",
-                                        "observer.alpha", "device.damping"};
+inline constexpr std::array kFittedKeys{"coupling.k_vc",      "coupling.b_vc",  "coupling.b_v",
+                                        "coupling.per_joint", "observer.alpha", "device.damping"};
 
 // Returns the paper's settings if they suit the arm: (3) holds with the values of its file, whose
 // damping is not far above what they need. Otherwise fits the keys above, at two digits, to the
 // chosen tick and to the chosen damping, if one is; (3) reckons with a delay t_d [s] and a link.
+// Gains that are chosen otherwise are those of all joints, so the fit does not weigh them.
 Parameters fitted(const ArmDescription& arm, const Parameters& chosen = {}, double delay = 0,
                   const LinkSettings& link = {});
 

@@ -94,8 +94,11 @@ class JudgedLaws {
                              p_.inertia_error * at_.M, b_d};
     for (const double hand : hands_) {
       const HeldArm held{at_.M + p_.hand_mass_at_tip * JJ,
-                         Eigen::MatrixXd(b_d.asDiagonal()) + p_.hand_damping * JJ, hand * JJ,
-                         p_.tick, ticks_of(tip_.loop.delay, p_.tick)};
+                         Eigen::MatrixXd(b_d.asDiagonal()) + p_.hand_damping * JJ,
+                         hand * JJ,
+                         p_.tick,
+                         ticks_of(tip_.loop.delay, p_.tick),
+                         gain_weights(p_, b_d)};
       const double wall = stable_up_to([&](double K) {
         switch (loop) {
           case LinearLoop::on_device: return growth_on_device(held, K * across);

@@ -36,7 +36,8 @@ class Stand {
         rig_(believed, scene, nullptr),
         arm_(truth),
         p_(p),
-        damping_(of_joints<kAnyDof>(truth, &Joint::damping)) {
+        damping_(of_joints<kAnyDof>(truth, &Joint::damping)),
+        proxy_damping_(p.b_v * gain_weights(p, device_damping(believed, p))) {
     rest_ = rest_pose(truth);
     device_.put(rest_);
     const VectorXd zero = VectorXd::Zero(rest_.size());
@@ -67,6 +68,8 @@ class Stand {
   const VirtualArm<kAnyDof>& truth() const { return device_.arm(); }
   const Arm<kAnyDof>& arm() const { return arm_; }
   const VectorXd& damping() const { return damping_; }
+  // The proxy's, by gains that fit the arm that the loop believes in [N m s/rad].
+  const VectorXd& proxy_damping() const { return proxy_damping_; }
   double energy() const { return most_; }
   bool force() const { return force_; }
 
@@ -88,7 +91,7 @@ class Stand {
   Rig rig_;
   Arm<kAnyDof> arm_;
   Parameters p_;
-  VectorXd damping_, rest_, x2_, tau2_;
+  VectorXd damping_, proxy_damping_, rest_, x2_, tau2_;
   std::vector<VectorXd> given_;  // by the law, the newest first [N m]
   std::vector<double> row_;
   bool force_ = true;
@@ -156,7 +159,7 @@ void explain_what_is_felt(const Truth& truth, const Stand& stand, const Paramete
     stand.arm().frames(x, frames);
     stand.arm().inertia_coriolis(frames, v, M, C);
     const VectorXd inertia = M * (truth.v[i + 1] - truth.v[i]) / p.tick + C * v;
-    const VectorXd damping = (stand.damping().array() + p.b_v).matrix().cwiseProduct(v);
+    const VectorXd damping = (stand.damping() + stand.proxy_damping()).cwiseProduct(v);
     const VectorXd wanted = promised.inertia * inertia + promised.damping * damping;
     missed += (truth.hand[i + 1] - wanted).squaredNorm();
     whole += wanted.squaredNorm();

@@ -18,9 +18,10 @@ std::string weak_spring_text(const ArmDescription& arm, const Parameters& p) {
   // Rate at which the spring brings device and proxy together [1/s]; slower than a hand moves.
   constexpr double kSlow = 2 * std::numbers::pi;
   const Eigen::MatrixXd M = arm_at(arm, rest_pose(arm)).M;
+  const Eigen::VectorXd springs = coupling_springs(arm, p);
   int weakest = 0;
-  for (int i = 1; i < arm.dof(); ++i) weakest = M(i, i) > M(weakest, weakest) ? i : weakest;
-  const double rate = std::sqrt(p.k_vc / M(weakest, weakest));
+  const double slowest = (springs.array() / M.diagonal().array()).minCoeff(&weakest);
+  const double rate = std::sqrt(slowest);
   if (rate >= kSlow) return {};
   return fmt::format(
       "coupling.k_vc is weak for joint {}: it brings device and proxy together at {:.2g} Hz there, "

@@ -77,13 +77,15 @@ double growth_behind_spring(const HeldArm& arm, const SpringDamper& g, const Mat
   const HeldDevice device(arm);
   const Index n = device.n, begin = device.size();
   const double T = arm.T, dampers = g.b_v + g.b_vc + g.k_vc * T / 2;
-  const MatrixXd impedance = 2 / T * M2 + dampers * MatrixXd::Identity(n, n) + T / 2 * wall;
+  const MatrixXd weights = arm.weights.asDiagonal();
+  const MatrixXd impedance = 2 / T * M2 + dampers * weights + T / 2 * wall;
   const MatrixXd answer = impedance.inverse();
   return growth(begin + 4 * n, [&](const VectorXd& at) {
     const VectorXd x1 = at.head(n), x2 = at.segment(begin, n), v2 = at.segment(begin + n, n),
                    vbar2 = at.segment(begin + 2 * n, n), v1 = at.tail(n) / T;
-    const VectorXd torque = -g.k_vc * (x1 - x2) - g.b_vc * (v1 - vbar2);
-    const VectorXd vbar = answer * (2 / T * M2 * v2 + g.b_vc * v1 - g.k_vc * (x2 - x1) - wall * x2);
+    const VectorXd torque = weights * (-g.k_vc * (x1 - x2) - g.b_vc * (v1 - vbar2));
+    const VectorXd on_proxy = weights * (g.b_vc * v1 - g.k_vc * (x2 - x1));
+    const VectorXd vbar = answer * (2 / T * M2 * v2 + on_proxy - wall * x2);
     const VectorXd moved = device.after(at.head(begin), torque);
     VectorXd next(begin + 4 * n);
     next << moved, x2 + T * vbar, 2 * vbar - v2, vbar, moved.head(n) - x1;
@@ -98,7 +100,8 @@ double growth_fed_forward(const HeldArm& arm, const SpringDamper& g, const FedFo
   const Index n = device.n, begin = device.size();
   const double T = arm.T, dampers = g.b_v + g.b_vc + g.k_vc * T / 2, eta = forward.eta;
   const MatrixXd one = MatrixXd::Identity(n, n), onto_proxy = forward.phi / eta * wall;
-  const MatrixXd impedance = 2 / T * M2 + dampers * one + T / 2 * onto_proxy;
+  const MatrixXd weights = arm.weights.asDiagonal();
+  const MatrixXd impedance = 2 / T * M2 + dampers * weights + T / 2 * onto_proxy;
   const MatrixXd answer = impedance.inverse();
   // The observer's gain over a tick, 1 - E of core/coupling/force_observer.h.
   constexpr double kPole = 1 - 1 / std::numbers::sqrt2;
@@ -112,10 +115,11 @@ double growth_fed_forward(const HeldArm& arm, const SpringDamper& g, const FedFo
     const VectorXd hand = forward.inertia * (v1 - v_before) / T +
                           0.5 * (forward.damping.cwiseProduct(v1 + v_before) - part(6) - part(7));
     const VectorXd f1_hat = part(4) + gain * (hand - part(4));
-    const VectorXd vbar = answer * (2 / T * M2 * v2 + g.b_vc * v1 - g.k_vc * (x2 - x1) +
-                                    forward.phi / eta * f1_hat - onto_proxy * x2);
+    const VectorXd on_proxy = weights * (g.b_vc * v1 - g.k_vc * (x2 - x1));
+    const VectorXd vbar =
+        answer * (2 / T * M2 * v2 + on_proxy + forward.phi / eta * f1_hat - onto_proxy * x2);
     const VectorXd f2 = -wall * (x2 + T / 2 * vbar);
-    const VectorXd torque = -g.k_vc * (x1 - x2) - g.b_vc * (v1 - vbar2) +
+    const VectorXd torque = weights * (-g.k_vc * (x1 - x2) - g.b_vc * (v1 - vbar2)) +
                             (1 - eta - forward.phi) / eta * f1_hat + (1 - forward.phi) / eta * f2;
     const VectorXd moved = device.after(at.head(begin), torque);
     VectorXd next(begin + 8 * n);

@@ -16,6 +16,7 @@ struct HeldArm {
   Eigen::MatrixXd stiffness;  // of the hand [N m/rad]
   double T = 0.001;           // [s]
   int delay = 0;              // of the device's torque [ticks]
+  Eigen::VectorXd weights;    // of the gains at each joint, see gain_weights() [-]
 };
 
 // Largest growth in a tick with a wall on the device itself, whose torque is held for a tick. wall:

@@ -25,9 +25,12 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   TipLimits l;
   l.tip = tip_along(arm.J, arm.M, b_d, n);
   l.easiest = easiest(arm.J, arm.M);
+  const Eigen::VectorXd weights = gain_weights(p, b_d);
+  l.weight = weight_at_tip(arm.J, weights, n);
+  l.easiest_weight = longest_levers_weight(arm.J, weights);
   l.loop = {p.tick,
-            p.k_vc,
-            p.b_v,
+            l.weight * p.k_vc,
+            l.weight * p.b_v,
             p.eta,
             p.hand_damping,
             p.hand_mass_at_tip,
@@ -41,9 +44,9 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   const double lever2 = l.tip.lever2;
   l.felt = {(1 + p.inertia_ratio) * l.tip.led,
             l.tip.damping,
-            p.b_v / lever2,
-            p.k_vc / lever2,
-            p.b_vc / lever2,
+            l.weight * p.b_v / lever2,
+            l.weight * p.k_vc / lever2,
+            l.weight * p.b_vc / lever2,
             p.tick,
             0,
             2 * p.oldest() * p.tick};

@@ -296,7 +296,9 @@ double eta_limit(const std::string& line, const RunPlan& run) {
   const Eigen::MatrixXd M_L = (1 + p.inertia_ratio) * arm.M, JJ = arm.J.transpose() * arm.J;
   const Eigen::VectorXd b_d = device_damping(run.arm, p);
   const Eigen::MatrixXd K_h = p.hand_stiffness * JJ, B_h = p.hand_damping * JJ;
-  if (line == "routh") return eta_min_grip(M_L, b_d.array() + p.b_v, p.alpha, K_h, B_h);
+  if (line == "routh") {
+    return eta_min_grip(M_L, b_d + p.b_v * gain_weights(p, b_d), p.alpha, K_h, B_h);
+  }
   return eta_min_compliant(M_L, b_d, p, K_h, B_h);
 }
 

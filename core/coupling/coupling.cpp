@@ -78,7 +78,7 @@ void Coupling<N>::book(const LawSettings& p, const LawInput<N>& in, const Proxy<
     const double given = in.authority > 0 ? given_to_bodies(proxy) : 0;
     ledger_.add(in.x1, ledger_.located(in.x1), sent, in.b_d_sure, given, in.encoder_step, elapsed_);
   }
-  const double spring = spring_energy<N>(p.k_vc, in.x1 - proxy.x(), in.limit);
+  const double spring = spring_energy<N>(springs(p, in.b_d), in.x1 - proxy.x(), in.limit);
   ledger_.settle(p.energy, spring + proxy.kinetic_energy() + proxy.contact_potential());
   if (in.armed_anew) ledger_.refill();
   const bool sure = (in.b_d_sure.array() >= in.b_d.array()).all();

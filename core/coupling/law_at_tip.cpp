@@ -27,7 +27,7 @@ FeltAtTip felt_mass(std::complex<double> Z, double f) {
 }
 
 TipWall LawAtTip::through_spring(double k_vc) const {
-  return {spring_at_tip(tip, k_vc), "the wall is felt through the spring k_vc"};
+  return {spring_at_tip(tip, weight * k_vc), "the wall is felt through the spring k_vc"};
 }
 
 TipWall LawAtTip::on_device(double stiffness, const char* bound) const {

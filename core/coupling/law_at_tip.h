@@ -34,7 +34,10 @@ FeltAtTip felt_mass(std::complex<double> Z, double f);
 struct LawAtTip {
   TipAlong tip;               // along the direction in which the arm's own dampers hold it least
   TipMoved easiest{};         // over all directions
-  WallSetting loop;           // of all joints alike; its delay is the device's
+  double weight = 1;          // of gains per joint along the tip's direction, see weight_at_tip()
+  double easiest_weight = 1;  // the same for the longest lever over all directions
+  WallSetting loop;           // gains that do along the tip what those of the joints do; its delay
+                              // is the device's
   LinkSettings link;          // between device and proxy
   Condition3 condition3;      // of spring, damper, delays and link
   double encoder_step = 0;    // [rad]
@@ -46,8 +49,8 @@ struct LawAtTip {
   AddedMass added{};          // of the predictive law: eta as the possible delay leaves it
 
   // Limits that several laws share: what is felt of the arm alone, and through spring and damper; a
-  // wall that is felt through the spring k_vc of a joint [N m/rad]; and a wall on the device itself
-  // [N/m], unless an encoder's step bounds it first.
+  // wall that is felt through the spring k_vc of the settings [N m/rad]; and a wall on the device
+  // itself [N/m], unless an encoder's step bounds it first.
   FeltAtTip arm_alone() const { return {tip.led, tip.damping}; }
   FeltAtTip behind_spring(double f) const { return felt_mass(felt.standard(f), f); }
   TipWall through_spring(double k_vc) const;

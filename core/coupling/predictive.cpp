@@ -82,11 +82,13 @@ class Predictive final : public Law<N> {
 
  private:
   struct Solve;
-  double held(double k_vc, const Ledger<N>& ledger, const Proxy<N>& proxy,
+  double held(const Vec<N>& k_vc, const Ledger<N>& ledger, const Proxy<N>& proxy,
               const TorqueLimits<N>& motors);
   void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer, const Motion<N>& right,
                       double T, bool resumed, Motion<N>& motion);
   bool solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found);
+  void set_gains(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy,
+                 const Vec<N>& weights, Solve& solve) const;
   void balance(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy,
                const TorqueLimits<N>& motors, double surprise);
 
@@ -137,8 +139,8 @@ struct Predictive<N>::Solve {
   Wide<N> phi_T, C_LE_T, impedance;
   Vec<N> drive, momentum;
   Vec<N> f1_hat;  // its share that is fed forward
-  Vec<N> b_w, s0;
-  double c = 0, g_f = 0;
+  Vec<N> b_w, s0, c;
+  double g_f = 0;
 
   Solve(const Locked<N>& d, const InertiaNetwork<N>& of_inertia, const Predictor<N>& device,
         const Proxy<N>& proxy, const LawInput<N>& in)
@@ -166,7 +168,7 @@ struct Predictive<N>::Solve {
     }
     const Wide<N> turning = minus_product_turned<N>(C_LE_T, phi_T);  // - C_LE^T phi
     Wide<N> uu = Z2 + turning - turned<N>(turning);
-    uu.diagonal().array() += c;
+    uu.diagonal() += c;
     ContactAnswer<N> answer(authority, phi_T, ww, authority * (Z2 + C_LE), uw, uu);
     answer.on_proxy.diagonal().array() += 1 - g_f;
     return answer;
@@ -181,7 +183,8 @@ struct Predictive<N>::Solve {
   // Torque tE wanted between device and proxy, with its part of f2.
   Vec<N> wanted(const Motion<N>& m, const Vec<N>& f2) const {
     const Vec<N> v_E = m.w - m.u, v_L = m.w - turned_times<N>(phi_T, v_E);
-    return g_f * f2 - c * v_E - s0 - times<N>(C_LE_T, v_L) - times<N>(phi_T, (f2 + f1_hat).eval());
+    return g_f * f2 - c.cwiseProduct(v_E) - s0 - times<N>(C_LE_T, v_L) -
+           times<N>(phi_T, (f2 + f1_hat).eval());
   }
 
   // Torque tL on the device alone.
@@ -194,7 +197,7 @@ struct Predictive<N>::Solve {
   // The joint system with motors at their limit. The spring's damping is raised from c by
   // `stiffer`, so that a joint that is let go comes to rest; the proxy's damper b_v holds what no
   // motor does.
-  LimitedSolve<N> limited(double stiffer, double b_v) const {
+  LimitedSolve<N> limited(const Vec<N>& stiffer, const Vec<N>& b_v) const {
     const Eigen::Index n = s0.size();
     const Mat<N> I = Mat<N>::Identity(n, n);
     const Mat<N> share = narrowed<N>(phi_T), C_T = narrowed<N>(C_LE_T), C_LE = C_T.transpose();
@@ -203,14 +206,16 @@ struct Predictive<N>::Solve {
     const Mat<N> share_w = share * shaped, share_u = -share * C_LE;
     const Vec<N> share_N = share * network.force();
     LimitedSolve<N> s;
-    s.tE = {-s0 - share * f1_hat, locked_w - (c + stiffer) * I, locked_u + (c + stiffer) * I};
+    s.tE = {-s0 - share * f1_hat, locked_w, locked_u};
+    s.tE.on_w.diagonal() -= c + stiffer;
+    s.tE.on_u.diagonal() += c + stiffer;
     s.tL = {network.force() - share_N, shaped - share_w, -C_LE - share_u};
     s.tL.on_w.diagonal() -= b_w;
     s.rest = {share_N, share_w, share_u};
     s.on_f2 = g_f * I - share;
     s.D0 = D0;
     s.impedance = narrowed<N>(impedance);
-    s.impedance.diagonal().array() += b_v;
+    s.impedance.diagonal() += b_v;
     s.drive = drive;
     s.momentum = momentum;
     s.limit = limit;
@@ -262,7 +267,7 @@ void Predictive<N>::balance(const LawSettings& p, const LawInput<N>& in, const P
     network_.advance(ledger.dx(), elapsed_);
     network_.lose(-cut_.dot(ledger.dx()));
   }
-  ledger.settle(p.energy, held(p.k_vc, ledger, proxy, motors) + network_.storage() +
+  ledger.settle(p.energy, held(springs(p, in.b_d), ledger, proxy, motors) + network_.storage() +
                               proxy.kinetic_energy() + proxy.contact_potential());
   if (in.armed_anew) ledger.refill();
   const bool sure = (in.b_d_sure.array() >= in.b_d.array()).all();
@@ -279,12 +284,12 @@ void Predictive<N>::balance(const LawSettings& p, const LawInput<N>& in, const P
 // limit bounds changes as the proxy slides along walls, so no function of the place tells what it
 // returns: all that was put in.
 template <int N>
-double Predictive<N>::held(double k_vc, const Ledger<N>& ledger, const Proxy<N>& proxy,
+double Predictive<N>::held(const Vec<N>& k_vc, const Ledger<N>& ledger, const Proxy<N>& proxy,
                            const TorqueLimits<N>& motors) {
   const Vec<N> apart = y_ - proxy.x();
   const bool tip = motors.J != nullptr;
   const double spring =
-      spring_energy<N>(k_vc, apart, tip ? motors.reached(k_vc * apart) : motors.joints);
+      spring_energy<N>(k_vc, apart, tip ? motors.reached(k_vc.cwiseProduct(apart)) : motors.joints);
   if (!limited_) {
     apart_ = apart;
     spring_ = held_ = spring;
@@ -297,6 +302,20 @@ double Predictive<N>::held(double k_vc, const Ledger<N>& ledger, const Proxy<N>&
   }
   if (tip) before_ = proxy.x();
   return held_;
+}
+
+// Sets springs, dampers and what the ledger leaves of the rest. weights: see gain_weights().
+template <int N>
+void Predictive<N>::set_gains(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy,
+                              const Vec<N>& weights, Solve& solve) const {
+  solve.f1_hat *= fed_forward(p, in, proxy.ratio());
+  solve.c = (p.b_vc + p.k_vc * in.tick / 2) * weights;
+  solve.s0 = weights.cwiseProduct(p.k_vc * (predictor_.x() - proxy.x()));
+  solve.g_f = in.ledger->contact();
+  solve.b_w = p.b_v * weights;
+  if (!proxy.contacts().engaged()) {
+    solve.b_w -= in.ledger->damping() * (1 - p.damping_share(p.eta)) * (in.b_d + solve.b_w);
+  }
 }
 
 template <int N>
@@ -324,14 +343,8 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
   Solve solve(d, network_, predictor_, proxy, in);
   const double share = in.ledger->torque();
   solve.authority *= share;
-  solve.f1_hat *= fed_forward(p, in, proxy.ratio());
-  solve.c = p.b_vc + p.k_vc * T / 2;
-  solve.s0 = p.k_vc * (predictor_.x() - proxy.x());
-  solve.g_f = in.ledger->contact();
-  solve.b_w = Vec<N>::Constant(in.b_d.size(), p.b_v);
-  if (!proxy.contacts().engaged()) {
-    solve.b_w -= in.ledger->damping() * (1 - p.damping_share(p.eta)) * (in.b_d + solve.b_w);
-  }
+  const Vec<N> weights = gain_weights(p, in.b_d);
+  set_gains(p, in, proxy, weights, solve);
 
   ContactAnswer<N> answer = solve.system();
   Motion<N> motion = answer.solve(solve.right());
@@ -361,8 +374,8 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
   report_.solved = TickSolve::usual;
   if (limited || !settled) {
     report_.solved = limited ? TickSolve::limited : TickSolve::together;
-    const double stiffer = std::max(0.0, p.k_vc * T / 2 - p.b_vc);
-    LimitedSolve<N> both = limited ? solve.limited(stiffer, p.b_v) : solve.limited(0, 0);
+    const double stiffer = limited ? std::max(0.0, p.k_vc * T / 2 - p.b_vc) : 0;
+    LimitedSolve<N> both = solve.limited(stiffer * weights, (limited ? p.b_v : 0) * weights);
     if (limited) both.limit = motors.along(wanted_);
     solve_together(both, answer, solve.right(), T, resumed, motion);
     f2 = both.f2;
@@ -371,8 +384,9 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
     tau1_ = motors.within(both.tau1);
     cut_ = both.given - both.tau1;
     const Vec<N> apart = predictor_.x() - proxy.x() + T * (motion.w - motion.u);
-    goes_on_ = limited && (both.at_limit() ||
-                           (p.k_vc * apart.array().abs() > kStillPulled * in.limit.array()).any());
+    const Vec<N> pull = p.k_vc * weights.cwiseProduct(apart).cwiseAbs();
+    goes_on_ =
+        limited && (both.at_limit() || (pull.array() > kStillPulled * in.limit.array()).any());
   }
   limited_ = limited;
   contacts_.finish(proxy.contacts());

@@ -92,9 +92,9 @@ struct LedgerSettings {
 };
 
 struct PredictiveLaw {
-  static constexpr std::array kSliders{"coupling.eta",  "coupling.damping", "coupling.band",
-                                       "coupling.k_vc", "coupling.b_vc",    "coupling.b_v",
-                                       "ledger.energy"};
+  static constexpr std::array kSliders{"coupling.eta",       "coupling.damping", "coupling.band",
+                                       "coupling.k_vc",      "coupling.b_vc",    "coupling.b_v",
+                                       "coupling.per_joint", "ledger.energy"};
   static constexpr LawInfo kInfo{
       .key = "predictive",
       .label = "Predictive",

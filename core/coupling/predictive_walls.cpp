@@ -58,7 +58,7 @@ std::string told(const BoundedWall& wall, PredictiveWallSetting setting, const L
   const double q_t = 1000 * setting.encoder_step * at.easiest.lever;  // [mm]
   switch (wall.by) {
     case WallBound::tried:
-      return fmt::format("the stiffest wall that was tested{}{}",
+      return fmt::format("no stiffer wall was tested{}{}",
                          setting.encoder_step > 0 ? " with encoder steps" : "",
                          at.loop.T > 1.001 * kTriedTick ? " at a tick of this length" : "");
     case WallBound::quick:
@@ -123,8 +123,10 @@ BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s)
 }
 
 TipWall PredictiveLaw::wall(const LawSettings& p, const LawAtTip& at) {
-  const PredictiveWallSetting setting{at.loop,     at.encoder_step,     at.friction,
-                                      p.hand_mass, p.delay * at.loop.T, at.inertia_ratio};
+  PredictiveWallSetting setting{at.loop,     at.encoder_step,     at.friction,
+                                p.hand_mass, p.delay * at.loop.T, at.inertia_ratio};
+  setting.at.k_vc = at.easiest_weight * p.k_vc;
+  setting.at.b_v = at.easiest_weight * p.b_v;
   const BoundedWall wall = predictive_wall(at.easiest, setting);
   return {wall.stiffness, told(wall, setting, at)};
 }

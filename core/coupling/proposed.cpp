@@ -23,7 +23,7 @@ class Proposed final : public Law<N> {
     FromProxy<N> here = told(in, proxy);
     const FromDevice<N>& far = in.link->to_proxy(told(in));
     const Decomposition<N> there(far.device, here.proxy);
-    move_proxy<N>(p, in.T, far, feedforward(eta, there, far.f1_hat), proxy);
+    move_proxy<N>(p, in, far, feedforward(eta, there, far.f1_hat), proxy);
     here.f2 = proxy.f();
     const FromProxy<N>& known = in.link->to_device(here);
     const Decomposition<N> d(in.device, known.proxy);

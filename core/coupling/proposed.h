@@ -14,8 +14,8 @@ namespace limpid {
 
 struct ProposedLaw {
   static constexpr std::array kSliders{"coupling.eta",  "observer.alpha", "coupling.k_vc",
-                                       "coupling.b_vc", "coupling.b_v",   "link.delay",
-                                       "link.jitter",   "link.loss"};
+                                       "coupling.b_vc", "coupling.b_v",   "coupling.per_joint",
+                                       "link.delay",    "link.jitter",    "link.loss"};
   static constexpr LawInfo kInfo{
       .key = "proposed",
       .label = "Proposed",

@@ -19,7 +19,7 @@ Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>
 
 // The proxy's half of couple(), (2), from its side's knowledge of the device.
 template <int N>
-void move_proxy(const SpringDamper& p, double T, const FromDevice<N>& device,
+void move_proxy(const SpringDamper& p, const LawInput<N>& in, const FromDevice<N>& device,
                 const Feedforward<N>& ff, Proxy<N>& proxy);
 // The device's half, (1), from its side's knowledge of the proxy.
 template <int N>
@@ -37,16 +37,23 @@ FromProxy<N> told(const LawInput<N>& in, const Proxy<N>& proxy) {
   return {proxy.x(), in.vbar2, {proxy.M(), proxy.C(), proxy.v()}, zero, 0, 0, zero};
 }
 
-// Energy of the coupling's spring, whose torque is at most the motors' [J].
+// Energy of the coupling's springs k_vc, one at each joint, whose torque is at most the motors'
+// [J].
 template <int N>
-double spring_energy(double k_vc, const Vec<N>& x, const Vec<N>& limit) {
+double spring_energy(const Vec<N>& k_vc, const Vec<N>& x, const Vec<N>& limit) {
   double V = 0;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double pull = k_vc * std::abs(x[i]);
-    V += pull > limit[i] ? limit[i] * std::abs(x[i]) - limit[i] * limit[i] / (2 * k_vc)
+    const double pull = k_vc[i] * std::abs(x[i]);
+    V += pull > limit[i] ? limit[i] * std::abs(x[i]) - limit[i] * limit[i] / (2 * k_vc[i])
                          : pull * std::abs(x[i]) / 2;
   }
   return V;
+}
+
+// The spring k_vc at each joint [N m/rad].
+template <int N>
+Vec<N> springs(const SpringDamper& p, const Vec<N>& b_d) {
+  return p.k_vc * gain_weights(p, b_d);
 }
 
 // Energy given to bodies over the last tick [J].

@@ -9,12 +9,13 @@
 namespace limpid {
 
 struct SpringDamper {
-  double k_vc = 10;     // [N m/rad]
-  double b_vc = 0.001;  // [N m s/rad]
-  double b_v = 0.012;   // [N m s/rad]
+  double k_vc = 10;        // [N m/rad]
+  double b_vc = 0.001;     // [N m s/rad]
+  double b_v = 0.012;      // [N m s/rad]
+  bool per_joint = false;  // see gain_weights()
 
   template <class P>
-  static constexpr std::array<Field<P>, 3> settings() {
+  static constexpr std::array<Field<P>, 4> settings() {
     return {{{"coupling.k_vc", "k_vc", "Coupling spring k_vc", &P::k_vc, "N m/rad", 1e-3, 1e4, 0.1,
               100, true, true,
               "Spring between device and proxy, equations (1)-(2). A stiffer spring keeps both "
@@ -27,9 +28,22 @@ struct SpringDamper {
              {"coupling.b_v", "b_v", "Proxy damper b_v", &P::b_v, "N m s/rad", 0, 100, 1e-4, 1,
               true, true,
               "Damping of the proxy, equation (2). The hand feels it through the coupling. "
-              "Condition (3) asks for at least k_vc T / 2."}}};
+              "Condition (3) asks for at least k_vc T / 2."},
+             {"coupling.per_joint", "gains per joint", "Gains grow with each joint's damping",
+              &P::per_joint, "-", 0, 1, 0, 1, false, true,
+              "k_vc, b_vc and b_v are the gains of the joint with the least damping b_d. The other "
+              "joints have gains that are larger in the same proportion as their damping, so all "
+              "joints meet condition (3) alike. Off: all joints have the same gains."}}};
   }
 };
+
+// Factors of k_vc, b_vc and b_v at each joint [-]. b_d: of every joint [N m s/rad].
+template <class V>
+V gain_weights(const SpringDamper& p, const V& b_d) {
+  const double least = p.per_joint ? b_d.minCoeff() : 0;
+  if (!(least > 0)) return V::Ones(b_d.size());
+  return b_d / least;
+}
 
 inline constexpr int kMostLinkDelay = 200, kMostLinkJitter = 50;  // [ticks]
 
@@ -78,6 +92,8 @@ struct LinkSettings {
 // x1_k-d), together at most k_vc d (dx1^2 + dx2^2). For d ticks each way this agrees with Lee and
 // Spong (2006) and Nuno et al. (2009) for such couplings in continuous time. Velocities that are
 // held for want of newer ones act up to j + 1 times.
+//
+// With gain_weights() the condition is the same for every joint.
 //
 // The condition covers spring and damper alone: no limit is known for torques that the proposed law
 // feeds forward through a link.

@@ -14,7 +14,7 @@ class Standard final : public Law<N> {
     const auto none = Feedforward<N>::none(in.x1.size());
     if (in.link == nullptr) return couple<N>(p, in, none, proxy);
     FromProxy<N> here = told(in, proxy);
-    move_proxy<N>(p, in.T, in.link->to_proxy(told(in)), none, proxy);
+    move_proxy<N>(p, in, in.link->to_proxy(told(in)), none, proxy);
     here.f2 = proxy.f();
     return on_device<N>(p, in, in.link->to_device(here), none);
   }

@@ -10,8 +10,9 @@
 namespace limpid {
 
 struct StandardLaw {
-  static constexpr std::array kSliders{"coupling.k_vc", "coupling.b_vc", "coupling.b_v",
-                                       "link.delay",    "link.jitter",   "link.loss"};
+  static constexpr std::array kSliders{"coupling.k_vc",      "coupling.b_vc", "coupling.b_v",
+                                       "coupling.per_joint", "link.delay",    "link.jitter",
+                                       "link.loss"};
   static constexpr LawInfo kInfo{
       .key = "standard",
       .label = "Standard",

@@ -89,7 +89,7 @@ void Tank<N>::settle(const Settings& p, const SpringDamper& c, int delay, const 
     const double all = std::min(p.tank_energy, left_), half = std::max(0.0, all / 2);
     // Tanks pay for the spring as it returns, so they get what the hand has put into it.
     const double in_spring =
-        takes_over_ ? spring_energy<N>(c.k_vc, in.x1 - proxy.x(), in.limit) : 0;
+        takes_over_ ? spring_energy<N>(springs(c, in.b_d), in.x1 - proxy.x(), in.limit) : 0;
     device_.start(in.x1, all - half + in_spring);
     proxy_ = half - debt_of(owed_, stored, added);
     fresh_ = false;
@@ -118,7 +118,8 @@ void Tank<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& 
   const double surplus = p.tank_share * std::max(0.0, proxy_ - p.tank_energy / 2);
   proxy_ -= surplus;
   sent2_ += surplus;
-  Vec<N> drive = c.b_vc * device.v1 - c.k_vc * (proxy.x() - device.x1);
+  const Vec<N> weights = gain_weights(c, in.b_d);
+  Vec<N> drive = weights.cwiseProduct(c.b_vc * device.v1 - c.k_vc * (proxy.x() - device.x1));
   const double own = c.b_v + c.b_vc + c.k_vc * T / 2;
   double damping = own;
   if (proxy_ > 0 && !idle) {
@@ -126,7 +127,7 @@ void Tank<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& 
   } else if (!idle) {
     drive.setZero();
   }
-  proxy.advance(T, {drive, damping});
+  proxy.advance(T, {drive, (own * weights).cwiseMax(damping)});
   work2_ = T * proxy.tau().dot(proxy.vbar());
   freely_ = idle || proxy_ > 0 ? own / damping : 0;
 }
@@ -139,7 +140,8 @@ Vec<N> Tank<N>::pull(const Settings& p, const SpringDamper& c, const LawInput<N>
   got1_ = proxy.sent;
   const double low = std::clamp(1 - device_.energy() / (p.tank_energy / 2), 0.0, 1.0);
   const double refill = low * std::min(p.tank_damping, kMostRefill / (in.T * (1 + in.delay_most)));
-  const Vec<N> wanted = -c.b_vc * (in.v1 - proxy.vbar2) - c.k_vc * (in.x1 - proxy.x2);
+  const Vec<N> pull = -c.b_vc * (in.v1 - proxy.vbar2) - c.k_vc * (in.x1 - proxy.x2);
+  const Vec<N> wanted = gain_weights(c, in.b_d).cwiseProduct(pull);
   const Vec<N> torque = wanted.cwiseMin(in.limit).cwiseMax(-in.limit);
   share_ = device_.share(torque, in.device.M, in.T);
   return share_ * torque - refill * (in.device.M * in.v1);

@@ -20,9 +20,9 @@ namespace limpid {
 
 // Two-layer passivity (Franken, Stramigioli, Misra, Secchi, Macchelli 2011).
 struct TankLaw {
-  static constexpr std::array kSliders{"coupling.k_vc", "coupling.b_vc", "coupling.b_v",
-                                       "tank.energy",   "tank.damping",  "link.delay",
-                                       "link.jitter",   "link.loss"};
+  static constexpr std::array kSliders{"coupling.k_vc",      "coupling.b_vc", "coupling.b_v",
+                                       "coupling.per_joint", "tank.energy",   "tank.damping",
+                                       "link.delay",         "link.jitter",   "link.loss"};
   static constexpr LawInfo kInfo{
       .key = "tank",
       .label = "Tank",

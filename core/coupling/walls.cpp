@@ -14,6 +14,10 @@ Mat3 mobility_of(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M) {
   return J * M.llt().solve(J.transpose());
 }
 
+double largest(const Mat3& A) {
+  return Eigen::SelfAdjointEigenSolver<Mat3>(A, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
 // n' A^-1 n, of the directions in which A is not zero.
 double along_inverse(const Mat3& A, const Vec3& n) {
   constexpr double kNone = 1e-12;  // part of the largest eigenvalue
@@ -36,10 +40,17 @@ TipAlong tip_along(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M, const Eig
           along_inverse(mobility, n)};
 }
 
+double weight_at_tip(const Eigen::MatrixXd& J, const Eigen::VectorXd& weights, const Vec3& n) {
+  const Eigen::VectorXd lever = J.transpose() * n;
+  return lever.squaredNorm() / lever.dot(lever.cwiseQuotient(weights));
+}
+
+double longest_levers_weight(const Eigen::MatrixXd& J, const Eigen::VectorXd& weights) {
+  return largest(J * J.transpose()) /
+         largest(J * weights.cwiseInverse().asDiagonal() * J.transpose());
+}
+
 TipMoved easiest(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M) {
-  const auto largest = [](const Mat3& A) {
-    return Eigen::SelfAdjointEigenSolver<Mat3>(A, Eigen::EigenvaluesOnly).eigenvalues()[2];
-  };
   return {1 / largest(mobility_of(J, M)), std::sqrt(largest(J * J.transpose()))};
 }
 

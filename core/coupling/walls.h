@@ -18,6 +18,11 @@ struct TipAlong {
 // n, above 0 [N m s/rad].
 TipAlong tip_along(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M, const Eigen::VectorXd& b_d,
                    const Vec3& n);
+// Gain of joints that are all alike which does at the tip along n what gains of these weights do,
+// over the gain of weight 1 [-]. weights: of every joint, at least 1.
+double weight_at_tip(const Eigen::MatrixXd& J, const Eigen::VectorXd& weights, const Vec3& n);
+// The same for the direction with the longest lever.
+double longest_levers_weight(const Eigen::MatrixXd& J, const Eigen::VectorXd& weights);
 // Mass of the easiest direction, and the longest lever.
 TipMoved easiest(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M);
 // Coulomb friction with which joints hold the tip, however it is pushed: the least of each joint's

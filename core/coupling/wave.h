@@ -26,8 +26,8 @@
 namespace limpid {
 
 struct WaveLaw {
-  static constexpr std::array kSliders{"coupling.k_vc", "coupling.b_v", "link.delay", "link.jitter",
-                                       "link.loss"};
+  static constexpr std::array kSliders{"coupling.k_vc", "coupling.b_v", "coupling.per_joint",
+                                       "link.delay",    "link.jitter",  "link.loss"};
   static constexpr LawInfo kInfo{
       .key = "wave",
       .label = "Wave variables",
@@ -49,8 +49,8 @@ struct WaveLaw {
     template <class P>
     static constexpr std::array<Field<P>, 2> settings() {
       return {
-          {{"wave.b", "line b", "Impedance of the line", &P::wave_b, "N m s/rad", 1e-5, 10, 1e-3,
-            0.1, true, true,
+          {{"wave.b", "line b", "Wave impedance b", &P::wave_b, "N m s/rad", 1e-5, 10, 1e-3, 0.1,
+            true, true,
             "Wave variables: impedance b of the line. Default: b_v, so that the proxy's damper "
             "matches the line. With a larger b walls feel stiffer if there is a delay, and free "
             "motion is damped more."},

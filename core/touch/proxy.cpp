@@ -120,7 +120,7 @@ void Proxy<N>::solve_with_friction(double T, const ProxyDrive<N>& drive) {
     share += drive.share.shared * drive.share.M_L->solve(M_).transpose();
   }
   Wide<N> Z = impedance(T);
-  Z.diagonal().array() += drive.damping;
+  Z.diagonal() += drive.damping;
   ContactAnswer<N> answer(0, widened<N>(share), widened<N>(one), widened<N>(none), widened<N>(none),
                           Z);
   if (drive.share.shared != 0) {
@@ -174,7 +174,7 @@ bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
   // (2/T M + S + damping + share K T/2) vbar = 2/T L nu + constant + share f2,
   // f2 - K T/2 vbar the contacts' force.
   Mat<N> A = narrowed<N>(impedance(T));
-  A.diagonal().array() += drive.damping;
+  A.diagonal() += drive.damping;
   Vec<N> b = momentum(T) + drive.constant;
   contacts_->add_to(A, b, T, drive.share, M_);
   vbar_ = solve<N>(A, b);

@@ -16,7 +16,7 @@ namespace limpid {
 template <int N>
 struct ProxyDrive {
   Vec<N> constant;  // [N m]
-  double damping;   // b_v + b_vc + k_vc T / 2 [N m s/rad]
+  Vec<N> damping;   // b_v + b_vc + k_vc T / 2 of every joint [N m s/rad]
   ContactShare<N> share{};
 };
 

@@ -13,15 +13,17 @@ void Chatter::start_over(SampleIndex next) {
   next_ = next;
 }
 
-void Chatter::follow(const History& history, SampleIndex end, int first, int dof, double k_vc) {
-  if (end < next_ || k_vc != k_vc_ || history.first() > next_) {
+void Chatter::follow(const History& history, SampleIndex end, int first,
+                     const Eigen::VectorXd& springs) {
+  const bool same = springs.size() == springs_.size() && springs == springs_;
+  if (end < next_ || !same || history.first() > next_) {
     start_over(std::max(end < next_ ? SampleIndex{0} : next_, history.first()));
-    k_vc_ = k_vc;
+    springs_ = springs;
   }
   const auto size = static_cast<SampleIndex>(std::lround(kStretch / history.tick()));
   for (; end - next_ >= size; next_ += size) {
     const double took = history.time(next_ + size - 1) - history.time(next_);
-    const Stretch now = measure(history, next_, next_ + size, first, dof, k_vc);
+    const Stretch now = measure(history, next_, next_ + size, first, springs);
     // The run began anew or stood still in between, or does not exist.
     if (took > 1.1 * kStretch || !std::isfinite(now.energy)) {
       before_.reset();
@@ -38,7 +40,7 @@ void Chatter::follow(const History& history, SampleIndex end, int first, int dof
 }
 
 Chatter::Stretch Chatter::measure(const History& history, SampleIndex from, SampleIndex to,
-                                  int first, int dof, double k_vc) {
+                                  int first, const Eigen::VectorXd& springs) {
   const auto at = [&](int channel, SampleIndex k) {
     return static_cast<double>(history.value(first + channel, k));
   };
@@ -46,15 +48,15 @@ Chatter::Stretch Chatter::measure(const History& history, SampleIndex from, Samp
   const auto count = static_cast<double>(to - from);
   Stretch stretch{0, 0, 0};
   double widest = 0;
-  for (int j = 0; j < dof; ++j) {
-    const int joint = of(Channel::joints) + j;
+  for (Eigen::Index j = 0; j < springs.size(); ++j) {
+    const int joint = of(Channel::joints) + static_cast<int>(j);
     double low = at(joint, from), high = low, sum = 0;
     for (SampleIndex k = from; k < to; ++k) {
       const double x = at(joint, k);
       low = std::min(low, x);
       high = std::max(high, x);
       sum += x;
-      stretch.held += 0.5 * k_vc * x * x / count;
+      stretch.held += 0.5 * springs[j] * x * x / count;
     }
     if (high - low <= widest) continue;
     widest = high - low;
@@ -75,12 +77,13 @@ Chatter::Stretch Chatter::measure(const History& history, SampleIndex from, Samp
   return stretch;
 }
 
-bool PlayedChatter::there(const History& history, SampleIndex at, int first, int dof, double k_vc) {
+bool PlayedChatter::there(const History& history, SampleIndex at, int first,
+                          const Eigen::VectorXd& springs) {
   const auto enough = static_cast<SampleIndex>(std::lround(2 / history.tick()));
   const SampleIndex end = at + 1;
   if (end < seen_ || end > seen_ + enough) chatter_.start_over(end - std::min(end, enough));
   seen_ = end;
-  chatter_.follow(history, end, first, dof, k_vc);
+  chatter_.follow(history, end, first, springs);
   return chatter_.there();
 }
 

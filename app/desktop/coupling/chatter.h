@@ -1,6 +1,7 @@
 // Detector of chatter: device and proxy shake against each other, and the coupling feeds it.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 
 #include "app/plot/history.h"
@@ -25,10 +26,10 @@ class Chatter {
   static constexpr double kFrequency = 16;  // least frequency of the error [Hz]
   static constexpr double kPower = 0.005;   // least power that the coupling gives [W]
 
-  // Looks at new samples up to `end`. The history has the channels of TraceChannels of an arm of
-  // `dof` joints, from `first` on those of this run. k_vc: the coupling's spring [N m/rad]; a
-  // change of it starts over.
-  void follow(const History& history, SampleIndex end, int first, int dof, double k_vc);
+  // Looks at new samples up to `end`. The history has the channels of TraceChannels, from `first`
+  // on those of this run. springs: the coupling's, see coupling_springs(); a change of them starts
+  // over.
+  void follow(const History& history, SampleIndex end, int first, const Eigen::VectorXd& springs);
   // Forgets all stretches so far, and samples before `next`.
   void start_over(SampleIndex next);
 
@@ -44,10 +45,10 @@ class Chatter {
     double frequency;  // of the error [Hz]
   };
   static Stretch measure(const History& history, SampleIndex from, SampleIndex to, int first,
-                         int dof, double k_vc);
+                         const Eigen::VectorXd& springs);
 
   SampleIndex next_ = 0;
-  double k_vc_ = 0;
+  Eigen::VectorXd springs_;
   std::optional<Stretch> before_;
   int in_a_row_ = 0;
   double power_ = 0, frequency_ = 0;
@@ -58,7 +59,7 @@ class PlayedChatter {
  public:
   // Returns whether a lane chatters at the sample `at`; as Chatter::follow(). A jump counts from
   // two seconds before its end.
-  bool there(const History& history, SampleIndex at, int first, int dof, double k_vc);
+  bool there(const History& history, SampleIndex at, int first, const Eigen::VectorXd& springs);
 
  private:
   Chatter chatter_;

@@ -8,6 +8,7 @@
 
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/scene/picking.h"
+#include "app/run/analysis.h"
 #include "app/run/tip_limits.h"
 #include "core/dynamics/arm.h"
 
@@ -80,7 +81,7 @@ void ChatterWatch::follow() {
       continue;
     }
     chatter.follow(stage.history, stage.history.end(), static_cast<int>(lane) * channels,
-                   stage.arm().dof(), p.k_vc);
+                   coupling_springs(stage.arm(), p));
     if (!chatter.there()) continue;
     if (!found_) found_ = Found{lane, p, wall_of(p)};
     if (found_->lane == lane) seen_ = Clock::now();

@@ -176,7 +176,7 @@ void DeviceTiming::draw_cost(const DevicePace::Figures& pace, const ArmDescripti
                   info(p.kind).key, wall.bound)
           .c_str());
   const double T = std::max(p.tick, pace.mean);
-  read_out("passive in any hand",
+  read_out("stiffest passive wall",
            pair(every_hands_wall(now_.tip, T, now_.loop.delay), prompt_.every_hand), {},
            "b_d / (T/2 + delay) is the stiffest wall that a plain spring can render and still be "
            "passive in every hand. T is the tick or the time between two readings, whichever is "

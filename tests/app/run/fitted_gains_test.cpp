@@ -1,12 +1,20 @@
 #include "app/run/fitted_gains.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <string>
+
 #include "app/run/analysis.h"
+#include "app/run/tip_limits.h"
 #include "core/dynamics/arm.h"
+#include "devices/files/urdf_file.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/taps.h"
 
 namespace limpid {
 namespace {
@@ -128,6 +136,109 @@ TEST(FittedGains, TakeTheDampingThatIsChosen) {
   EXPECT_EQ(p.damping, 3);
   EXPECT_NEAR(p.b_v, 3, 1e-9);
   EXPECT_NEAR(p.k_vc, 2500, 51);
+}
+
+TEST(FittedGains, GrowWithTheDampingOfTheJoints) {
+  ArmDescription arm = large_arm(0.5);
+  EXPECT_FALSE(fitted(arm).per_joint) << "all joints are alike";
+  arm.joints[2].damping = 40;
+  const Parameters p = fitted(arm);
+  EXPECT_TRUE(p.per_joint);
+  EXPECT_EQ(p.k_vc, fitted(large_arm(0.5)).k_vc) << "of the least damped joint";
+  const Eigen::VectorXd springs = coupling_springs(arm, p);
+  EXPECT_EQ(springs[0], p.k_vc);
+  EXPECT_EQ(springs[2], 80 * p.k_vc);
+  for (int i = 0; i < arm.dof(); ++i) {
+    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
+    EXPECT_TRUE(condition3({springs[i], p.b_vc * springs[i] / p.k_vc, p.b_v * springs[i] / p.k_vc},
+                           p.tick, std::array{joint.damping})
+                    .holds);
+  }
+  Parameters chosen;
+  chosen.k_vc = 20;
+  EXPECT_FALSE(fitted(arm, chosen).per_joint) << "20 N m/rad are meant for every joint";
+  chosen = {};
+  chosen.damping = 3;
+  EXPECT_FALSE(fitted(arm, chosen).per_joint) << "of every joint";
+  arm.delay = 0.001;
+  arm.joints[1].damping = 0;
+  EXPECT_FALSE(fitted(arm).per_joint) << "a joint was measured without damping";
+  arm.joints[1].damping = 0.5;
+  Parameters moved, own;
+  refit(moved, nullptr, &arm);
+  EXPECT_TRUE(moved.per_joint);
+  own.k_vc = 20;
+  refit(own, nullptr, &arm);
+  EXPECT_FALSE(own.per_joint);
+}
+
+// A random arm whose last joint turns about its own link: light, hardly damped, with a faint motor.
+// Gains of that joint alone let device and proxy drift apart: in a tap E_c rose to 0.28 J, and the
+// wall that was named, 97 N/m, was felt as 71 N/m.
+TEST(FittedGains, HoldTheWallThatIsNamedOnAnArmWithAFaintJoint) {
+  struct Part {
+    double at, mass, center, inertia_x, inertia, damping, effort;
+    Vec3 axis;
+  };
+  const Part parts[] = {
+      {0, 0.16043, 0.0520345, 8.96585e-06, 0.000237969, 0.3864, 5.079, Vec3::UnitZ()},
+      {0.132153, 0.0384825, 0.0354764, 2.35324e-06, 2.17667e-05, 0.09835, 3.181, Vec3::UnitY()},
+      {0.0801287, 0.148543, 0.0350196, 4.29856e-06, 0.000114091, 0.02568, 2.8, Vec3::UnitY()},
+      {0.0950957, 0.0470043, 0.0203988, 1.36432e-06, 1.8845e-05, 3.719e-05, 0.002389,
+       Vec3::UnitX()}};
+  const std::array<std::pair<double, double>, 4> ranges{std::pair(-1.1842988, 0.815701197),
+                                                        {-1.6732416, 0.326758396},
+                                                        {-0.334622168, 1.66537783},
+                                                        {-1.2644678, 0.7355322}};
+  std::string urdf = "<robot name='r'><link name='l0'/>";
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Part& p = parts[i];
+    urdf += fmt::format(
+        "<joint name='j{0}' type='revolute'><parent link='l{0}'/><child link='l{1}'/>"
+        "<origin xyz='{2} 0 0'/><axis xyz='{3} {4} {5}'/>"
+        "<limit lower='{6}' upper='{7}' effort='{8}' velocity='10'/><dynamics "
+        "damping='{9}'/></joint>",
+        i, i + 1, p.at, p.axis.x(), p.axis.y(), p.axis.z(), ranges[i].first, ranges[i].second,
+        p.effort, p.damping);
+    urdf += fmt::format(
+        "<link name='l{}'><inertial><origin xyz='{} 0 0'/><mass value='{}'/><inertia ixx='{}' "
+        "ixy='0' ixz='0' iyy='{}' iyz='0' izz='{}'/></inertial></link>",
+        i + 1, p.center, p.mass, p.inertia_x, p.inertia, p.inertia);
+  }
+  urdf +=
+      "<joint name='end' type='fixed'><parent link='l4'/><child link='tip'/><origin "
+      "xyz='0.0680948 0 0'/></joint><link name='tip'/></robot>";
+  const ArmDescription arm = parse_urdf(urdf, "arm", {});
+  Parameters asked;
+  asked.kind = CouplingKind::predictive;
+  asked.torque_limit = 1000;
+  asked.hand_damping = 2;
+  asked.device_delay = asked.delay = 1;
+  for (const double grip : {300.0, 2509.6}) {
+    asked.hand_stiffness = grip;
+    Parameters p = asked;
+    refit(p, nullptr, &arm);
+    EXPECT_TRUE(p.per_joint);
+    const Eigen::VectorXd x = rest_pose(arm), zero = Eigen::VectorXd::Zero(arm.dof());
+    test::Taps taps;
+    const double named = tip_limits(arm, x, p, {}).wall(p.kind).stiffness;
+    EXPECT_GT(named, 1000);
+    const RigStart start{x, zero, x, zero, zero, Arm<kAnyDof>(arm).tip_at(x), true};
+    const Vec3 out = Vec3(0.18325725607343066, 0.9830649917967978, 0);
+    const test::Spot spot = test::flat_spot(start.target - taps.above * out, out);
+    for (const double wall : {97.0, 500.0, named}) {
+      SCOPED_TRACE(wall);
+      taps.wall = wall;
+      taps.press = std::min(4.0, 0.005 * wall);
+      Scene scene;
+      scene.add({"", pose_at(spot.place), Plane{out}, {wall}});
+      const test::Felt felt = taps.felt(arm, scene, spot, p, start);
+      EXPECT_LE(felt.energy, 1e-6);
+      EXPECT_LE(felt.port, 1e-6);
+      EXPECT_NEAR(felt.stiffness, 1, 0.05);
+      EXPECT_LE(felt.chatter, 2e-3);
+    }
+  }
 }
 
 TEST(FittedGains, ComeAndGoWithTheArmAndLeaveWhatWasChosen) {

@@ -12,7 +12,7 @@ namespace {
 
 HeldArm one_joint(double mass, double damping, double stiffness, double T, int delay) {
   const auto number = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value); };
-  return {number(mass), number(damping), number(stiffness), T, delay};
+  return {number(mass), number(damping), number(stiffness), T, delay, Eigen::VectorXd::Ones(1)};
 }
 double on_device(const HeldArm& arm, double K) {
   return growth_on_device(arm, Eigen::MatrixXd::Constant(1, 1, K));
@@ -113,7 +113,8 @@ TEST(SampledWall, OfSeveralJointsIsTheWorstOfThem) {
   const auto both = [&](double one, double two) -> Eigen::MatrixXd {
     return turn * Eigen::Vector2d(one, two).asDiagonal() * turn.transpose();
   };
-  const HeldArm arm{both(2e-4, 1e-3), both(0.01, 0.02), both(5, 20), 0.001, 2};
+  const HeldArm arm{both(2e-4, 1e-3),        both(0.01, 0.02), both(5, 20), 0.001, 2,
+                    Eigen::VectorXd::Ones(2)};
   double direct = 0, behind = 0;
   for (int i = 0; i < 2; ++i) {
     direct = std::max(direct, on_device(joints[i], walls[i]));
@@ -123,6 +124,43 @@ TEST(SampledWall, OfSeveralJointsIsTheWorstOfThem) {
   EXPECT_NEAR(growth_on_device(arm, both(walls[0], walls[1])), direct, 1e-9);
   EXPECT_NEAR(growth_behind_spring(arm, gains, both(M2[0], M2[1]), both(walls[0], walls[1])),
               behind, 1e-9);
+}
+
+// A joint whose gains have a weight is a joint alone with gains as large.
+TEST(SampledWall, OfJointsWithGainsOfTheirOwnIsTheWorstOfThem) {
+  const SpringDamper gains{6, 0.001, 0.002};
+  const double weights[] = {3, 40}, walls[] = {30, 2000}, M2[] = {1e-5, 2e-4};
+  const HeldArm joints[] = {one_joint(2e-4, 0.01, 5, 0.001, 1), one_joint(1e-3, 0.2, 20, 0.001, 1)};
+  const auto both = [](double one, double two) -> Eigen::MatrixXd {
+    return Eigen::Vector2d(one, two).asDiagonal();
+  };
+  const HeldArm arm{both(2e-4, 1e-3),
+                    both(0.01, 0.2),
+                    both(5, 20),
+                    0.001,
+                    1,
+                    Eigen::Vector2d(weights[0], weights[1])};
+  FedForward forward{.eta = 0.8,
+                     .alpha = 0.01,
+                     .phi = 0,
+                     .inertia = both(2e-4, 1e-3),
+                     .damping = Eigen::Vector2d(0.01, 0.2)};
+  double behind[2], ahead[2];
+  for (int i = 0; i < 2; ++i) {
+    const double w = weights[i];
+    const SpringDamper own{w * gains.k_vc, w * gains.b_vc, w * gains.b_v};
+    behind[i] = behind_spring(joints[i], own, M2[i], walls[i]);
+    FedForward one = forward;
+    one.inertia = joints[i].inertia;
+    one.damping = forward.damping.segment(i, 1);
+    ahead[i] = growth_fed_forward(joints[i], own, one, Eigen::MatrixXd::Constant(1, 1, M2[i]),
+                                  Eigen::MatrixXd::Constant(1, 1, walls[i]));
+  }
+  EXPECT_NE(behind[0], behind[1]);
+  EXPECT_NEAR(growth_behind_spring(arm, gains, both(M2[0], M2[1]), both(walls[0], walls[1])),
+              std::max(behind[0], behind[1]), 1e-9);
+  EXPECT_NEAR(growth_fed_forward(arm, gains, forward, both(M2[0], M2[1]), both(walls[0], walls[1])),
+              std::max(ahead[0], ahead[1]), 1e-9);
 }
 
 TEST(SampledWall, NoneIsStableWhereTheTipIsNot) {

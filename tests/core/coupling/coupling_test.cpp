@@ -235,15 +235,23 @@ TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
     p.eta = 0.3;
     Coupling<kAnyDof> coupling;
     const Vec<kAnyDof> x = x1, v = v1, f1 = r.f1, vbar = vbar2;
-    const Vec<kAnyDof> b = Eigen::VectorXd::Zero(n), limit = Eigen::VectorXd::Constant(n, 1);
+    // Half of the time gains grow with the damping of the joints.
+    p.per_joint = i % 2 == 1;
+    const Vec<kAnyDof> b = 0.02 * (r.random.vector(n, 1).array() + 1.1);
+    const Vec<kAnyDof> limit = Eigen::VectorXd::Constant(n, 1);
     const Arm<kAnyDof>::Frames frames{};
     const LawInput<kAnyDof> in{x, v, r.one, f1, vbar, 0.001, frames, b, b, limit, 1, 0.001, 0, 0};
     const Eigen::VectorXd tau = coupling.step(CouplingKind::standard, p, in, proxy);
-    const Eigen::VectorXd on_device = -0.3 * (v1 - vbar2) - 7 * (x1 - x2);
-    EXPECT_LT((tau - on_device).norm(), 1e-13);
     const Eigen::VectorXd mean = proxy.vbar();
-    const Eigen::VectorXd on_proxy =
-        0.3 * (v1 - mean) - 7 * (x2 + 0.001 / 2 * mean - x1) - p.b_v * mean;
+    Eigen::VectorXd on_device(n), on_proxy(n);
+    for (int j = 0; j < n; ++j) {
+      const double more = p.per_joint ? b[j] / b.minCoeff() : 1;
+      const double k_vc = 7 * more, b_vc = 0.3 * more, b_v = p.b_v * more;
+      on_device[j] = -b_vc * (v1[j] - vbar2[j]) - k_vc * (x1[j] - x2[j]);
+      on_proxy[j] =
+          b_vc * (v1[j] - mean[j]) - k_vc * (x2[j] + 0.001 / 2 * mean[j] - x1[j]) - b_v * mean[j];
+    }
+    EXPECT_LT((tau - on_device).norm(), 1e-13 * (1 + on_device.norm()));
     EXPECT_LT((proxy.tau() - on_proxy).norm(), 1e-12 * (1 + on_proxy.norm()));
   }
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
 
@@ -24,6 +25,25 @@ TEST(TipAlong, OfABarHasItsInertiaAndDampingOverTheLeverSquared) {
   EXPECT_NEAR(tip.damping, 0.012 / 0.04, 1e-14);
   EXPECT_NEAR(tip.lever2, 0.04, 1e-16);
   EXPECT_NEAR(spring_at_tip(tip, 10), 250, 1e-11);
+}
+
+// A force F n turns the joints by K^-1 J' n F, K their springs, and moves the tip by n' J K^-1 J' n
+// F.
+TEST(TipAlong, SpringsThatDifferGiveWayByTheirSum) {
+  test::Random random(612);
+  for (int joints = 3; joints < 8; ++joints) {
+    const Eigen::MatrixXd J = random.matrix(joints, 0.2).topRows(3);
+    const Eigen::VectorXd weights = 1 + 50 * random.vector(joints, 1).array().abs();
+    const Vec3 n = Vec3(random.between(-1, 1), random.between(-1, 1), 0.3).normalized();
+    const Mat3 gives = J * (8 * weights).cwiseInverse().asDiagonal() * J.transpose();
+    const double stiffness = 1 / n.dot(gives * n);
+    TipAlong tip;
+    tip.lever2 = (J.transpose() * n).squaredNorm();
+    EXPECT_NEAR(spring_at_tip(tip, 8 * weight_at_tip(J, weights, n)), stiffness, 1e-9 * stiffness);
+    const double softest = 1 / gives.eigenvalues().real().maxCoeff();
+    const double lever = easiest(J, Eigen::MatrixXd::Identity(joints, joints)).lever;
+    EXPECT_NEAR(8 * longest_levers_weight(J, weights) / (lever * lever), softest, 1e-9 * softest);
+  }
 }
 
 // Led along n, the tip's kinetic energy is the least of all joint velocities that move it so; free

@@ -41,6 +41,7 @@ TEST(Parameters, HaveEveryKeyOfTheContractOnce) {
                                        "coupling.k_vc",
                                        "coupling.b_vc",
                                        "coupling.b_v",
+                                       "coupling.per_joint",
                                        "coupling.eta",
                                        "observer.alpha",
                                        "observer.anti_windup",

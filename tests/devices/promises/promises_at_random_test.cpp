@@ -116,11 +116,35 @@ TEST(PromisesAtRandom, PassivityControllerTakesBackWhatWasGiven) {
   });
 }
 
+// Dampings of the joints over three decades, above the least that the arm has.
+void damp_each_joint(ArmDescription& arm, Random& random) {
+  const double least = own_damping(arm).minCoeff();
+  for (Joint& joint : arm.joints) joint.damping = random.log_between(1, 1000) * least;
+}
+
+// On the edge of condition (3), at every joint by its own damping.
+TEST(PromisesAtRandom, SpringsThatGrowWithTheDampingGiveNothing) {
+  expect_in_all_runs(Column::energy_total, 1e-9, [](unsigned seed) {
+    Tapping t = on_the_device(seed, CouplingKind::standard);
+    Random random(seed + 6'000'000);
+    damp_each_joint(t.arm, random);
+    const double b_d = own_damping(t.arm).minCoeff(), delay = t.p.tick * t.p.delay;
+    t.p.per_joint = true;
+    t.p.b_vc = random.between(0, 0.4) * b_d;
+    t.p.k_vc = (b_d - 2 * t.p.b_vc) / (t.p.tick + 1.5 * delay);
+    t.p.b_v = t.p.k_vc * (t.p.tick + delay) / 2;
+    t.p.torque_limit = 1e4;
+    return t;
+  });
+}
+
 // Device and proxy together are given nothing through any link, with a line up to b_d.
 TEST(PromisesAtRandom, WavesGiveNothingThroughAnyLink) {
   expect_in_all_runs(Column::energy_total, 1e-9, [](unsigned seed) {
     Tapping t = test::at_random(seed, CouplingKind::wave);
     Random random(seed + 3'000'000);
+    if (seed % 2 == 0) damp_each_joint(t.arm, random);
+    t.p.per_joint = seed % 4 == 0;
     t.p.wave_b = random.log_between(0.1, 1) * own_damping(t.arm).minCoeff();
     return t;
   });

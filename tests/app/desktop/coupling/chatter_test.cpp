@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/plot/trace_channels.h"
+#include "app/run/analysis.h"
 #include "app/run/scene_meshes.h"
 #include "app/run/tip_limits.h"
 #include "core/dynamics/arm.h"
@@ -30,7 +31,7 @@ Seen look_at(RunPlan plan) {
   Seen seen;
   simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
     channels.append(history, row);
-    chatter.follow(history, history.end(), 0, plan.arm.dof(), plan.parameters.k_vc);
+    chatter.follow(history, history.end(), 0, coupling_springs(plan.arm, plan.parameters));
     if (chatter.there() && seen.first < 0) {
       seen = {history.end_time(), chatter.power(), chatter.frequency()};
     }
@@ -136,7 +137,7 @@ TEST(PlayedChatter, IsThereAfterAJumpToAnyPlace) {
   std::vector<bool> wanted;
   simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
     channels.append(history, row);
-    live.follow(history, history.end(), 0, plan.arm.dof(), plan.parameters.k_vc);
+    live.follow(history, history.end(), 0, coupling_springs(plan.arm, plan.parameters));
     wanted.push_back(live.there());
     return true;
   });
@@ -144,7 +145,7 @@ TEST(PlayedChatter, IsThereAfterAJumpToAnyPlace) {
   ASSERT_LT(began + 1000, wanted.size());
   PlayedChatter played;
   const auto there = [&](SampleIndex at) {
-    return played.there(history, at, 0, plan.arm.dof(), plan.parameters.k_vc);
+    return played.there(history, at, 0, coupling_springs(plan.arm, plan.parameters));
   };
   for (SampleIndex at = 0; at + 16 < began; at += 16) EXPECT_FALSE(there(at)) << at;
   EXPECT_TRUE(there(began + 500));

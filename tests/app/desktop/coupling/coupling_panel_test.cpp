@@ -170,8 +170,9 @@ TEST_F(CouplingWords, HaveASliderForEachParameterOfTheLaw) {
     if (!law.on_device) click("Advanced");
     click("Link");
     for (const std::string_view key : law.sliders) {
-      EXPECT_EQ(shown(key), !(key.starts_with("link.") && !law.knows_link()))
-          << law.key << " " << key;
+      const bool left_out = (key.starts_with("link.") && !law.knows_link()) ||
+                            key == "coupling.per_joint";  // all joints are alike here
+      EXPECT_EQ(shown(key), !left_out) << law.key << " " << key;
     }
     EXPECT_EQ(find("Packets lost").has_value(), law.knows_link()) << law.key;
     EXPECT_EQ(sentences().find("has no link.") != std::string::npos, !law.knows_link());
@@ -180,6 +181,18 @@ TEST_F(CouplingWords, HaveASliderForEachParameterOfTheLaw) {
     EXPECT_FALSE(find("Coupling spring k_vc")) << "folded";
     EXPECT_FALSE(find("Packets lost"));
   }
+}
+
+// Nobody needs the switch where it would change nothing.
+TEST_F(CouplingWords, OfferGainsForEachJointWhereItsDampingIsItsOwn) {
+  draw();
+  click("Advanced");
+  EXPECT_FALSE(find("Gains grow with each joint's damping"));
+  arm_.joints[1].damping *= 5;
+  draw();
+  ASSERT_TRUE(find("Gains grow with each joint's damping"));
+  click("Gains grow with each joint's damping");
+  EXPECT_TRUE(p_.per_joint);
 }
 
 TEST_F(CouplingWords, SayWhichPromiseIsBrokenAndByHowMuch) {
@@ -420,6 +433,24 @@ TEST_F(CouplingWords, OfARerunTellWhichRecordedChangesItMakes) {
   EXPECT_THAT(sentences(), HasSubstr("after the start: " + eta + "."));
   EXPECT_THAT(sentences(), HasSubstr("In the recording, " + law +
                                      " changes after the start. The re-run keeps its own"));
+}
+
+TEST_F(CouplingWords, OfRerunsSayWhatCameOfEach) {
+  const Parameters recorded = p_;
+  const std::array runs{RunFigures{"recorded: standard", 4.63, 0.182, -1e-9},
+                        RunFigures{"re-run: eta 0.5", 0.21, 0.199, 0.00312}};
+  const auto draw_with = [&](std::span<const RunFigures> tried) {
+    show([&] {
+      draw_coupling_of_rerun(p_, {recorded, {}, tried}, recorded, {.analysis = a_, .arm = arm_});
+    });
+  };
+  draw_with({});
+  EXPECT_THAT(words(), Not(HasSubstr("recorded: standard"))) << "nothing was tried yet";
+  draw_with(runs);
+  for (const char* word : {"error", "mrad", "recorded: standard", "4.63", "re-run: eta 0.5", "0.21",
+                           "0.199", "3.12"}) {
+    EXPECT_THAT(words(), HasSubstr(word));
+  }
 }
 
 TEST_F(CouplingWords, OfARerunHaveNothingOfTheLoop) {

@@ -97,7 +97,7 @@ TEST_F(TimingOfADevice, SaysWhatPaceAndDelayCostInStiffness) {
   const auto of = [](double now, double at_once) {
     return fmt::format("{:.0f} of {:.0f} N/m", now, at_once);
   };
-  EXPECT_EQ(value("passive in any hand"), of(prompt.every_hand / 6, prompt.every_hand));
+  EXPECT_EQ(value("stiffest passive wall"), of(prompt.every_hand / 6, prompt.every_hand));
   const double wall = late.wall(p_.kind).stiffness, wall_at_once = prompt.wall(p_.kind).stiffness;
   EXPECT_LT(wall, wall_at_once);
   EXPECT_EQ(value("stiffest wall"), of(wall, wall_at_once));
