@@ -91,7 +91,7 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
   if (!a.condition3.holds) {
     report.warnings.push_back(
         "condition (3) is not met with these settings: reduce coupling.k_vc or coupling.b_vc, or "
-        "do not set the two gains; Limpid then fits both gains to the arm");
+        "set neither of them; Limpid then fits both to the arm");
     const std::string late = fit_text(fitted(arm, p, a.delay, p));
     if (!a.condition3.known) {
       report.warnings.back() =

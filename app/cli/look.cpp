@@ -143,7 +143,7 @@ Command declare_look(CLI::App& devices) {
   auto options = std::make_shared<LookOptions>();
   command->add_option("DEVICE", options->device,
                       "the device's id, as `limpid devices` lists it; default: the device in use");
-  command->add_option("--record", options->record, "the session file for the readings")
+  command->add_option("--record", options->record, "the session file that is written")
       ->required()
       ->type_name("OUT.h5");
   require_above_zero(command

@@ -406,11 +406,12 @@ Command declare_run(CLI::App& app) {
   command->add_flag("--json", options->json,
                     "print the results as one JSON object, instead of lines");
   command->add_flag("--realtime", options->realtime, "run in real time, at the tick rate");
-  command->add_flag("--measure-grip", options->measure_grip,
-                    fmt::format("measure how the hand holds the device: for {:.3g} s the motors "
-                                "add a small force; prints stiffness, damping and mass of the hand "
-                                "with their bounds, and eta_min and walls in this hand",
-                                GripProbe::kDuration));
+  command->add_flag(
+      "--measure-grip", options->measure_grip,
+      fmt::format("measure how the hand holds the device: for {:.3g} s the motors "
+                  "add a small force; prints stiffness, damping and mass of the hand "
+                  "with their bounds, and eta_min and the walls that are stable in this hand",
+                  GripProbe::kDuration));
   for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
     command
         ->add_option_function<std::vector<std::string>>(

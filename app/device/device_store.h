@@ -87,7 +87,7 @@ inline constexpr std::array kAxisFields{
 inline constexpr auto kOwnForcesFields = [] {
   auto fields =
       joined<OwnForces>(CompensationSettings::settings<OwnForces>(),
-                        std::array{Field<OwnForces>("device.down", "Down, seen from the base",
+                        std::array{Field<OwnForces>("device.down", "Down, in the base's frame",
                                                     choice<OwnForces, &OwnForces::down>(kDowns),
                                                     {0, kDowns.size() - 1}, "")});
   for (auto& field : fields) field.key += std::string_view(field.key).find('.') + 1;

@@ -163,7 +163,7 @@ void write_characterization(const Characterized& subject, const Characterization
              "Measured on the virtual arm; no device was pushed.",
              numbers_section(subject) + walls_section(found) + free_section(found) +
                  report_section(kCharacterize,
-                                "the same results as a figure, with the promised bounds", dir));
+                                "the same results as a figure, and checks with their bounds", dir));
 }
 
 }  // namespace limpid

@@ -61,7 +61,7 @@ struct Case {
 };
 
 std::vector<Case> drags() {
-  return {{fmt::format("{} sticking, {} slipping", kStatic, kKinetic),
+  return {{fmt::format("{} static, {} kinetic", kStatic, kKinetic),
            kProxyInk,
            {.stiffness = kWall, .friction_static = kStatic, .friction_kinetic = kKinetic}},
           {"0.2 for both",

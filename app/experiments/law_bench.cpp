@@ -126,7 +126,7 @@ FigurePanel energy_panel(const std::string& title, std::span<const LawCame> all)
   constexpr double kLeast = 1e-4, kMost = 1e3;  // [mJ]
   FigurePanel panel{.title = title,
                     .x_label = "stiffness felt [N/m]",
-                    .y_label = "largest energy given [mJ]",
+                    .y_label = "largest energy given to the hand [mJ]",
                     .log_x = true,
                     .log_y = true,
                     .x_range = std::pair(20.0, 4000.0),

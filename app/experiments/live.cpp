@@ -330,7 +330,7 @@ Outcome live_zwidth(LiveLaboratory& lab) {
       kSoft, 1e3 * WellRendered::kChatter);
   FigurePanel panel{.title = "Chatter in contact",
                     .x_label = "stiffness of the wall [N/m]",
-                    .y_label = "speed above 20 Hz [mm/s]",
+                    .y_label = "rms speed above 20 Hz [mm/s]",
                     .log_x = true};
   double stiffest[2] = {};
   constexpr CouplingKind kRuns[] = {CouplingKind::proposed, CouplingKind::predictive};

@@ -286,7 +286,7 @@ void add_curves(FigurePanel& panel, const std::vector<RobustCase>& cases, std::s
 FigurePanel given_panel(const Robustness& all, std::size_t way) {
   constexpr double kLeast = 1e-3, kMost = 1e4;  // [mJ]
   FigurePanel panel =
-      panel_of(way, "Energy given at the computed wall", "largest energy given [mJ]");
+      panel_of(way, "Energy given at the computed wall", "largest energy given to the hand [mJ]");
   panel.y_range = {0.5 * kLeast, 2 * kMost};
   add_curves(panel, all.cases, way,
              [&](std::size_t i) { return std::clamp(1e3 * all.came[i].given, kLeast, kMost); });

@@ -101,7 +101,7 @@ std::string line_of(const Object& object) {
     text += fmt::format(", {} on {}", kKinds[static_cast<std::size_t>(body.joint->kind)],
                         body.joint->to.empty() ? "the world" : "'" + body.joint->to + "'");
   }
-  if (body.magnet) text += ", can be picked up";
+  if (body.magnet) text += ", the magnet picks it up";
   return text;
 }
 

@@ -87,6 +87,7 @@ void RunWatch::add(std::span<const double> row) {
     begun_at_ = energy;
     shares_.begin(spring_energy(layout_, row));
   }
+  whole_ = std::max(whole_, energy - *begun_at_);
   shares_.take(time, energy - *begun_at_, withheld_.add(layout_, row), limited);
   energy_.take(time, at_fault_ ? shares_.without_limits() : shares_.own(), promised_ + kGivenEnergy,
                settings_);
@@ -120,9 +121,17 @@ std::vector<std::string> RunWatch::cautions() const {
         promised_ > 0 ? fmt::format(", more than the {} that the energy account allows",
                                     joules_text(promised_))
                       : "";
-    all.push_back(fmt::format(
-        "E_c rose to {}{}, above the limit since t = {:.3f} s: this run is not passive ({})",
-        joules_text(energy_.most), allowed, energy_.since, energy_.with));
+    constexpr double kMore = 1.01;  // times the share that is the coupling's own
+    const bool part = whole_ > kMore * energy_.most;
+    const std::string gave =
+        part ? fmt::format(
+                   "the coupling by itself gave {} (E_c rose to {}, with changes of settings, "
+                   "motors at their limit and force held back)",
+                   joules_text(energy_.most), joules_text(whole_))
+             : "E_c rose to " + joules_text(energy_.most);
+    all.push_back(
+        fmt::format("{}{}, above the limit since t = {:.3f} s: this run is not passive ({})", gave,
+                    allowed, energy_.since, energy_.with));
   }
   if (speed_.since >= 0) {
     all.push_back(

@@ -68,6 +68,7 @@ class RunWatch {
   std::vector<MotorLimit> limits_;  // of the motors
   double tick_ = 0, at_limit_ = 0;  // time with a motor at its limit [s]
   double promised_ = 0;             // largest E_c that the law allows [J]
+  double whole_ = 0;                // largest E_c [J]
   bool at_fault_ = false;           // the law is known not to be passive
   std::string settings_;            // in words
   Excess energy_, speed_;

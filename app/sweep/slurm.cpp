@@ -31,7 +31,7 @@ std::optional<std::uint64_t> number_in(const char* variable) {
 // Output of a shell command. Errors: std::runtime_error with the output.
 std::string said_by(const std::string& command) {
   FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) throw std::runtime_error("found no shell that can start " + command);
+  if (pipe == nullptr) throw std::runtime_error("cannot start a shell for " + command);
   std::string text;
   std::array<char, 4096> block;
   while (const std::size_t count = std::fread(block.data(), 1, block.size(), pipe)) {

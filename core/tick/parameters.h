@@ -152,8 +152,8 @@ struct DeviceSettings {
           false, true,
           "The virtual arm has the springs given by its file; the file of an identified arm has "
           "springs. With model.springs the motors cancel the torque of these springs."},
-         {"device.down", "down", "Down, seen from the base", choice<P, &P::down>(kDowns), "-", 0, 6,
-          0, 6, false, true,
+         {"device.down", "down", "Down, in the base's frame", choice<P, &P::down>(kDowns), "-", 0,
+          6, 0, 6, false, true,
           "Direction of gravity in the frame of the arm's base, for an arm that hangs or lies on "
           "its side. file: the direction in the arm's file, or -z if the file has none."}}};
   }

@@ -92,9 +92,10 @@ constexpr double kPiece = 1. / 32, kMostPieces = 128;
 // Height below which a triangle has no direction, as a part of its longest edge.
 constexpr double kSliver = 1e-9;
 
-std::string counted(std::size_t n, const char* what) {
-  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+std::string counted(std::size_t n, const std::string& one, const std::string& several) {
+  return std::to_string(n) + " " + (n == 1 ? one : several);
 }
+std::string counted(std::size_t n, const std::string& one) { return counted(n, one, one + "s"); }
 
 }  // namespace
 
@@ -248,7 +249,7 @@ void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
   for (const std::uint32_t i : indices) {
     if (i >= vertices.size()) {
       throw std::invalid_argument("index " + std::to_string(i) + " of " +
-                                  counted(vertices.size(), "vertice"));
+                                  counted(vertices.size(), "vertex", "vertices"));
     }
     if (!vertices[i].allFinite() || vertices[i].cwiseAbs().maxCoeff() > 1e9f) {
       throw std::invalid_argument(

@@ -94,7 +94,7 @@ class Parser {
   }
 
   void close_collection(const ReportItem& item) {
-    if (collections_.empty()) refuse(item, "it closes a collection that is not open");
+    if (collections_.empty()) refuse(item, "the item closes a collection that is not open");
     collections_.pop_back();
   }
 

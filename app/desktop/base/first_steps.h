@@ -19,7 +19,7 @@ struct FirstStepInfo {
 // Steps in the order in which they are worth trying; hints and "Your turn" go by them.
 inline constexpr std::array kFirstSteps{
     FirstStepInfo{FirstStep::pull, 'd', "Pull the arm by its tip", "left drag"},
-    FirstStepInfo{FirstStep::push, 'w', "Push the tip nearer and farther", "wheel while dragging"},
+    FirstStepInfo{FirstStep::push, 'w', "Move the tip along the view", "wheel while dragging"},
     FirstStepInfo{FirstStep::press, 'p', "Press the tip onto something", "left drag"},
     FirstStepInfo{FirstStep::law, 'c', "Switch the coupling", "C"},
     FirstStepInfo{FirstStep::eta, 'e', "Make the arm lighter or heavier", "[ and ]"},

@@ -175,7 +175,7 @@ Object body_of(const TomlTable& t, SceneDocument& out) {
 
 std::string bodies_text(const std::vector<std::string>& names) {
   return names.empty() ? "the name of a body; the file has no bodies"
-                       : fmt::format("the name of a body: {}", fmt::join(names, ", "));
+                       : fmt::format("one of the bodies {}", fmt::join(names, ", "));
 }
 
 void check_joints(const std::vector<TomlTable>& tables, const Scene& scene) {
@@ -190,7 +190,7 @@ void check_joints(const std::vector<TomlTable>& tables, const Scene& scene) {
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (joint_leads_round(scene, first + i)) {
-      tables[i].table("joint")->refuse("to", "a body that is not itself attached to this body");
+      tables[i].table("joint")->refuse("to", "a body whose joints do not lead to this body");
     }
   }
 }

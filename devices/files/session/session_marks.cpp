@@ -137,7 +137,7 @@ std::vector<Mark> read_marks(hid_t root, std::uint64_t rows, const fs::path& fil
   for (const Source* source : {&ticks_at, &texts_at}) {
     if (source->rows > kMostMarks) {
       refuse(file,
-             fmt::format("{}: {} marks; allowed: {}", source->path, source->rows, kMostMarks));
+             fmt::format("{}: {} marks; allowed: at most {}", source->path, source->rows, kMostMarks));
     }
     claims.stored(source->dataset);
   }
@@ -181,7 +181,7 @@ void write_marks_here(const fs::path& file, int descriptor, const MarkOrder& ord
     }
   }
   if (all.size() > kMostMarks) {
-    refuse(file, fmt::format("{} marks; allowed: {}", all.size(), kMostMarks));
+    refuse(file, fmt::format("{} marks; allowed: at most {}", all.size(), kMostMarks));
   }
   if (H5Lexists(root, "marks", H5P_DEFAULT) > 0) {
     hdf5::check(H5Ldelete(root, "marks", H5P_DEFAULT) >= 0, file, "cannot write its marks");

@@ -159,8 +159,7 @@ auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> g
   given.push_back({*other_end, STDOUT_FILENO});
   Child child({at, what, file.string()}, given);
   if (!child.started()) {
-    refuse(file,
-           fmt::format("cannot be read: the program {}, which reads it, cannot be started", at));
+    refuse(file, fmt::format("cannot be read: its reader {} cannot be started", at));
   }
   other_end.close();
   try {

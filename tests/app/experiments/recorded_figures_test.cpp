@@ -341,7 +341,7 @@ TEST(FiguresOf, SaturationHaveAPointForEachCorner) {
 TEST(FiguresOf, FrictionShowItsDrags) {
   const Made made("friction");
   const std::tuple<const char*, const char*, double, double> drags[] = {
-      {"drag-0.5-0.3", "0.5 sticking, 0.3 slipping", 0.5, 0.3},
+      {"drag-0.5-0.3", "0.5 static, 0.3 kinetic", 0.5, 0.3},
       {"drag-0.2-0.2", "0.2 for both", 0.2, 0.2},
       {"drag-0-0", "smooth", 0, 0}};
   const std::string title =
@@ -385,7 +385,7 @@ TEST(FiguresOf, FrictionShowItsDrags) {
     EXPECT_LT(curve.points[half + half / 2].y, 0);
   }
   const Kept rough = made.kept("drag-0.5-0.3");
-  const std::string slip = "Stick and slip: 0.5 sticking, 0.3 slipping";
+  const std::string slip = "Stick and slip: 0.5 static, 0.3 kinetic";
   expect_over_time(made.curve(slip, "hand"), rough,
                    [&](auto k) { return 1e3 * rough.one(k, Column::hand_target, 1); });
   expect_over_time(made.curve(slip, "device"), rough,
@@ -397,7 +397,7 @@ TEST(FiguresOf, FrictionShowItsDrags) {
   const auto& smooth = made.curve(taken, "smooth");
   expect_on(
       smooth, [](double) { return 0.0; }, 1e-6);
-  for (const char* label : {"0.5 sticking, 0.3 slipping", "0.2 for both"}) {
+  for (const char* label : {"0.5 static, 0.3 kinetic", "0.2 for both"}) {
     const Series& curve = made.curve(taken, label);
     for (std::size_t i = 1; i < curve.points.size(); ++i) {
       EXPECT_LE(curve.points[i].y, curve.points[i - 1].y + 1e-3) << "it only takes";

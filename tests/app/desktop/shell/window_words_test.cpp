@@ -423,7 +423,7 @@ TEST_F(Words, OfYourTurnTickWhatWasDone) {
   note_done(desktop->settings, FirstStep::pull);
   frames(4);
   EXPECT_THAT(words("Your turn"), HasSubstr("Your turn, 2 of 7:"));
-  EXPECT_THAT(words("Your turn"), HasSubstr("Push the tip nearer and farther"));
+  EXPECT_THAT(words("Your turn"), HasSubstr("Move the tip along the view"));
   click("Close", "Your turn");
   EXPECT_FALSE(desktop->settings.your_turn);
   width = 1440;

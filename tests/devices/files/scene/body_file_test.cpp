@@ -270,10 +270,10 @@ TEST(BodyFile, RefusesWhatAJointCannotBe) {
        {"x.toml:9: body.joint.travel", "[[0, 1], [0, 2]]", "larger"}},
       {joint(axis + "travel = []\n"), {"body.joint.travel", "at least one"}},
       {joint(axis + "travel = [0, 1]\n"), {"body.joint.travel", "lists of 2"}},
-      {joint(axis + "to = \"b\"\n"), {"x.toml:9: body.joint.to", "\"b\"", "name of a body: a"}},
-      {joint(axis + "to = \"a\"\n"), {"x.toml:9: body.joint.to", "is not itself attached to"}},
+      {joint(axis + "to = \"b\"\n"), {"x.toml:9: body.joint.to", "\"b\"", "one of the bodies a"}},
+      {joint(axis + "to = \"a\"\n"), {"x.toml:9: body.joint.to", "whose joints do not lead to"}},
       {joint(axis + "to = \"b\"\n") + body("[body.joint]\nkind = \"ball\"\nto = \"a\"\n", "b"),
-       {"x.toml:9: body.joint.to", "\"b\"", "is not itself attached to"}},
+       {"x.toml:9: body.joint.to", "\"b\"", "whose joints do not lead to"}},
   });
 }
 
@@ -283,8 +283,8 @@ TEST(BodyFile, RefusesWhatASpringCannotBe) {
       {spring, {"x.toml:11: spring.between", "missing"}},
       {spring + "between = []\n", {"x.toml:12: spring.between", "one or two"}},
       {spring + "between = [\"a\", \"b\", \"a\"]\n", {"spring.between", "one or two"}},
-      {spring + "between = [\"a\", \"c\"]\n", {"spring.between", "name of a body: a, b"}},
-      {spring + "between = [\"\", \"a\"]\n", {"spring.between", "name of a body"}},
+      {spring + "between = [\"a\", \"c\"]\n", {"spring.between", "one of the bodies a, b"}},
+      {spring + "between = [\"\", \"a\"]\n", {"spring.between", "one of the bodies"}},
       {spring + "between = [\"a\", \"a\"]\n", {"spring.between", "two different bodies"}},
       {spring + "between = [\"a\"]\npoints = [[0, 0, 0]]\n", {"x.toml:13: spring.points", "of 2"}},
       {spring + "between = [\"a\"]\npoints = [[0, 0], [0, 0]]\n", {"spring.points", "of 3"}},
