@@ -215,7 +215,7 @@ for wrong in (lambda: setattr(loop, "eta", 0.3), lambda: __import__("pickle").du
               lambda: simulated.tick([0, -0.8, 1.5], elapsed=float("nan")), lambda: loop.step((10**400, 0, 0)),
               lambda: loop.run([(0, *loop.tip), (1, *loop.tip)], duration=1e12), lambda: limpid.Arm("a", joints=[3]),
               lambda: limpid.Arm(3), lambda: limpid.Arm("a", tip=3), lambda: limpid.Arm("a", joints=[{"slides": "no"}]),
-              lambda: limpid.Arm("a", joints=[{"mass": 1, "inertia": (1,) * 7}]), lambda: limpid.Scene(title="\ud800").text(),
+              lambda: limpid.Arm("a", joints=[{"mass": 1, "inertia": (1,) * 7}]), lambda: limpid.Scene(title=chr(0xd800)).text(),
               lambda: setattr(limpid.Scene(), "gravity", (0, 0, 0)), lambda: limpid.Loop(coupling__per_joints=True)):
     try:
         wrong()
