@@ -27,13 +27,13 @@ bool has_slider(const Parameters& p, const std::string& key) {
 }
 
 // Returns whether a setting has a line: the law, unusual values and, with `everything`, the grip
-// and the law's sliders do.
+// and the law's sliders do, but for a flag.
 bool told(const ParameterInfo& info, const Parameters& p, bool everything) {
   const std::string key = info.key;
   if (key == "coupling.kind") return true;
   if (parameter_text(p, info) != parameter_text(Parameters{}, info)) return true;
   const bool of_grip = key == "hand.stiffness" || key == "hand.damping";
-  return everything && (of_grip || has_slider(p, key));
+  return everything && info.kind != FieldInfo::Kind::flag && (of_grip || has_slider(p, key));
 }
 
 void cell(const std::string& text, Rgb ink) {

@@ -132,8 +132,10 @@ std::vector<std::string> hints(const std::string& task, const std::string& pad,
   std::vector<std::string> lines;
   if (!task.empty()) lines.push_back(task);
   for (const auto& [step, line] : all) {
-    // Whoever has reached something has no need to lead the tip nearer or farther.
-    const bool needless = step == FirstStep::push && done(settings, FirstStep::press);
+    // A task may say already how the tip is led. Whoever has reached something has no need to lead
+    // it nearer or farther.
+    const bool said = step == FirstStep::pull && pad.empty() && task.starts_with("Drag the tip");
+    const bool needless = said || (step == FirstStep::push && done(settings, FirstStep::press));
     if (done(settings, step) || needless) continue;
     lines.push_back(line);
     break;

@@ -386,6 +386,16 @@ TEST_F(AView, TellsTheTaskAndTheNextStepUntilSomethingIsTouched) {
   EXPECT_TRUE(says("Turn the wheel"));
 }
 
+TEST_F(AView, TellsNoHintThatTheTaskTells) {
+  rect_ = {{0, 0}, {800, 600}};
+  SceneDocument document;
+  document.about = "Drag the tip down onto the table.";
+  open(document);
+  draw();
+  EXPECT_TRUE(says("Drag the tip down onto the table."));
+  EXPECT_FALSE(says("Drag the arm by its tip"));
+}
+
 // A ball of triangles whose middle is not its object's place.
 TEST_F(AView, TellsHintsBesideAMesh) {
   rect_ = {{0, 0}, {800, 600}};
