@@ -329,7 +329,9 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
 void FilmFrame::draw_legend(const ScreenRect& rect, const PictureLegend& legend) const {
   const float em = font(Face::small)->FontSize;
   if (rect.height() < 10 * em) return;
-  draw_picture_legend(*ImGui::GetBackgroundDrawList(), rect.min, rect.max, legend);
+  const float below_names = legend.compact ? run_name_room() : 0;
+  draw_picture_legend(*ImGui::GetBackgroundDrawList(), {rect.min.x, rect.min.y + below_names},
+                      rect.max, legend);
 }
 
 void FilmFrame::draw_caption(const ScreenRect& rect, const FilmCaption& caption) const {

@@ -98,6 +98,8 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double de
   const double least = again * p.b_vc + p.k_vc * (chosen.tick + delay + 2 * old) / 2;
   set(p, "coupling.b_v", up(std::max(b_d, least)));
   set(p, "observer.alpha", down(35.0 / 12 * b_d));
+  // Gains beyond (3), at their least value, would be so by the largest weight.
+  p.per_joint = p.per_joint && condition3(p, chosen.tick, std::span(&b_d, 1), delay, link).holds;
   return p;
 }
 

@@ -170,6 +170,8 @@ void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture,
   }
 }
 
+float run_name_room() { return 2.2f * font(Face::semibold)->FontSize; }
+
 void draw_run_name(const RunNames& names, std::size_t run, ScreenRect part, ImDrawList& list) {
   const Palette& colours = current_palette();
   const std::string name = names.name(run);

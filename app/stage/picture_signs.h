@@ -46,6 +46,8 @@ void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture
 void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
 // Draws a run's name at the top of its part of the picture, with a sample of its curves.
 void draw_run_name(const RunNames& names, std::size_t run, ScreenRect part, ImDrawList& list);
+// Room of these names from a picture's top on; legends begin below it [px].
+float run_name_room();
 
 // Draws a sign that must not be missed, at the top of a picture or below the names of its runs.
 void draw_sign(const std::string& sign, ScreenRect picture, bool below_names, ImDrawList& list);

@@ -1,8 +1,10 @@
 #include "core/coupling/law_at_tip.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <tuple>
 
 #include "core/coupling/laws.h"
@@ -19,6 +21,20 @@ struct Told {
 template <class... Law>
 Told<Law...> told_by(std::tuple<Law...>*);
 using AllTold = decltype(told_by(static_cast<Laws*>(nullptr)));
+
+// Returns the tip with the gains of a law that takes those of all joints alike.
+LawAtTip alike(LawAtTip at) {
+  for (double* gain : {&at.loop.k_vc, &at.loop.b_v, &at.felt.k_vc, &at.felt.b_v, &at.felt.b_vc}) {
+    *gain /= at.weight;
+  }
+  at.weight = at.easiest_weight = 1;
+  return at;
+}
+
+bool weighs_gains(CouplingKind kind) {
+  return std::ranges::find(info(kind).sliders, std::string_view("coupling.per_joint")) !=
+         info(kind).sliders.end();
+}
 
 }  // namespace
 
@@ -37,11 +53,11 @@ TipWall LawAtTip::on_device(double stiffness, const char* bound) const {
 }
 
 TipWall wall_at_tip(CouplingKind kind, const LawSettings& p, const LawAtTip& at) {
-  return AllTold::kWalls[static_cast<std::size_t>(kind)](p, at);
+  return AllTold::kWalls[static_cast<std::size_t>(kind)](p, weighs_gains(kind) ? at : alike(at));
 }
 
 FeltAtTip felt_at_tip(CouplingKind kind, const LawSettings& p, const LawAtTip& at, double f) {
-  return AllTold::kFelt[static_cast<std::size_t>(kind)](p, at, f);
+  return AllTold::kFelt[static_cast<std::size_t>(kind)](p, weighs_gains(kind) ? at : alike(at), f);
 }
 
 }  // namespace limpid

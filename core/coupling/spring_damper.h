@@ -33,7 +33,8 @@ struct SpringDamper {
               &P::per_joint, "-", 0, 1, 0, 1, false, true,
               "k_vc, b_vc and b_v are the gains of the joint with the least damping b_d. The other "
               "joints have gains that are larger in the same proportion as their damping, so all "
-              "joints meet condition (3) alike. Off: all joints have the same gains."}}};
+              "joints meet condition (3) alike. Off: all joints have the same gains, as under wave "
+              "and tdpn in any case."}}};
   }
 };
 

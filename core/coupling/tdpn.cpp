@@ -40,7 +40,7 @@ class Tdpn final : public Law<N> {
     device.sent = in1_;
     const FromDevice<N>& far = in.link != nullptr ? in.link->to_proxy(device) : device;
     FromProxy<N> here = told(in, proxy);
-    here.f2 = move(p, far, in, proxy);
+    here.f2 = move(p, far, in.T, proxy);
     here.sent = in2_;
     const FromProxy<N>& near = in.link != nullptr ? in.link->to_device(here) : here;
     return pull(p, in, near);
@@ -50,18 +50,15 @@ class Tdpn final : public Law<N> {
 
  private:
   // Moves the proxy by its spring; returns the spring's force [N m].
-  Vec<N> move(const LawSettings& p, const FromDevice<N>& far, const LawInput<N>& in,
-              Proxy<N>& proxy) {
-    const double T = in.T;
-    const Vec<N> weights = gain_weights(p, in.b_d);
-    const Vec<N> damping = (p.k_vc * T / 2 + p.b_vc) * weights;
+  Vec<N> move(const LawSettings& p, const FromDevice<N>& far, double T, Proxy<N>& proxy) {
+    const double damping = p.k_vc * T / 2 + p.b_vc;
     const Vec<N> x2 = proxy.x();
     const auto spring = [&](const Vec<N>& v) -> Vec<N> {
-      return weights.cwiseProduct(p.k_vc * (x_d_ - x2)) + damping.cwiseProduct(v);
+      return p.k_vc * (x_d_ - x2) + damping * v;
     };
     const double left = std::max(0.0, far.sent - out2_);
     const Vec<N> v_d = (far.x1 - came_) / T;
-    const Vec<N> expected = spring(v_d) - damping.cwiseProduct(proxy.vbar());
+    const Vec<N> expected = spring(v_d) - damping * proxy.vbar();
     Vec<N> fix = p.tdpn_drift / T * (came_ - x_d_);
     came_ = far.x1;
     if (const double costs = T * expected.dot(fix); costs > 0) {
@@ -73,8 +70,8 @@ class Tdpn final : public Law<N> {
       v -= (costs - left) / (T * expected.squaredNorm()) * expected;
     }
     const Vec<N> constant = spring(v);
-    proxy.advance(T, {constant, p.b_v * weights + damping});
-    const Vec<N> F2 = constant - damping.cwiseProduct(proxy.vbar());
+    proxy.advance(T, {constant, Vec<N>::Constant(constant.size(), p.b_v + damping)});
+    const Vec<N> F2 = constant - damping * proxy.vbar();
     x_d_ += T * v;
     const double given = T * F2.dot(v);
     (given > 0 ? out2_ : in2_) += std::abs(given);

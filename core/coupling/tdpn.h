@@ -20,9 +20,9 @@
 namespace limpid {
 
 struct TdpnLaw {
-  static constexpr std::array kSliders{"coupling.k_vc",      "coupling.b_vc", "coupling.b_v",
-                                       "coupling.per_joint", "tdpn.damping",  "link.delay",
-                                       "link.jitter",        "link.loss"};
+  static constexpr std::array kSliders{"coupling.k_vc", "coupling.b_vc", "coupling.b_v",
+                                       "tdpn.damping",  "link.delay",    "link.jitter",
+                                       "link.loss"};
   static constexpr LawInfo kInfo{
       .key = "tdpn",
       .label = "Two-port TDPA",

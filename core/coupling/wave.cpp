@@ -32,9 +32,8 @@ class Wave final : public Law<N> {
     return {in.x1, in.v1};
   }
   Vec<N> step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) override {
-    const Vec<N> weights = gain_weights(p, in.b_d);
-    const Vec<N> b = p.line() * weights, r = (2 * b).cwiseSqrt();
-    const Vec<N> beside = (p.wave_matched ? 1 : 0) * b;
+    const double b = p.line(), r = std::sqrt(2 * b);
+    const double beside = p.wave_matched ? b : 0;
     send(p, in, beside, r);
     authority_ = in.authority;
     if (std::exchange(fresh_, false)) x_d_ = proxy.x();
@@ -47,46 +46,42 @@ class Wave final : public Law<N> {
     const FromDevice<N>& far = in.link != nullptr ? in.link->to_proxy(device) : device;
     FromProxy<N> here = told(in, proxy);
     const Vec<N> u = at_proxy_.play({far.number, far.waves, far.sent}, due, in.T);
-    move(p, u, weights, r, in.T, proxy);
+    move(p, u, b, r, in.T, proxy);
     here.number = from_proxy_.number = number_;
     here.waves = from_proxy_.waves;
     here.sent = from_proxy_.energy;
     const FromProxy<N>& near = in.link != nullptr ? in.link->to_device(here) : here;
     w_ = at_device_.play({near.number, near.waves, near.sent}, due, in.T);
     number_ += 1;
-    return r.cwiseProduct(w_) - (b + beside).cwiseProduct(v1_);
+    return r * w_ - (b + beside) * v1_;
   }
   void applied(const Vec<N>& torque) override { port_.applied(torque); }
 
  private:
   // The wave that leaves the device after the tick just ended.
-  void send(const LawSettings& p, const LawInput<N>& in, const Vec<N>& beside, const Vec<N>& r) {
+  void send(const LawSettings& p, const LawInput<N>& in, double beside, double r) {
     if (!port_.read(in)) return;
     const double T = port_.elapsed();
     const Vec<N>&D = port_.D(), &acted = port_.sent(p.delay);
-    const Vec<N> acting = acted + (authority_ * beside).cwiseProduct(v1_);
-    double energy = T / 2 * w_.squaredNorm() - acting.dot(D) - debt_;
+    double energy = T / 2 * w_.squaredNorm() - (acted + authority_ * beside * v1_).dot(D) - debt_;
     if (energy < 0) {  // the device's own damping pays, as far as it is known
       energy = std::min(0.0, energy + in.b_d.dot(D.cwiseAbs2()) / T);
     }
     debt_ = std::max(0.0, -energy);
-    Vec<N> u = r.cwiseProduct(D) / T - w_;
+    Vec<N> u = r * D / T - w_;
     const double most = std::sqrt(std::max(0.0, 2 * energy / T));
     if (u.norm() > most) u *= most / u.norm();
     from_device_.add(u, T);
     v1_ = D / T;
   }
   // Spring and line at the proxy, at the midpoint of the tick.
-  void move(const LawSettings& p, const Vec<N>& u, const Vec<N>& weights, const Vec<N>& r, double T,
-            Proxy<N>& proxy) {
-    const Vec<N> b = p.line() * weights;
-    const double s = (p.k_vc * T / 2 + p.line()) / p.line(), damping = s * p.line() / (1 + s);
-    const Vec<N> spring = weights.cwiseProduct(p.k_vc * (x_d_ - proxy.x()));
-    const Vec<N> constant = (spring + (s * r).cwiseProduct(u)) / (1 + s);
-    proxy.advance(T, {constant, (p.b_v + damping) * weights});
-    const Vec<N> F2 = constant - (damping * weights).cwiseProduct(proxy.vbar());
-    x_d_ += (T * (r.cwiseProduct(u) - F2)).cwiseQuotient(b);
-    from_proxy_.add(u - r.cwiseQuotient(b).cwiseProduct(F2), T);
+  void move(const LawSettings& p, const Vec<N>& u, double b, double r, double T, Proxy<N>& proxy) {
+    const double s = (p.k_vc * T / 2 + b) / b, damping = s * b / (1 + s);
+    const Vec<N> constant = (p.k_vc * (x_d_ - proxy.x()) + s * r * u) / (1 + s);
+    proxy.advance(T, {constant, Vec<N>::Constant(constant.size(), p.b_v + damping)});
+    const Vec<N> F2 = constant - damping * proxy.vbar();
+    x_d_ += T * (r * u - F2) / b;
+    from_proxy_.add(u - r / b * F2, T);
   }
 
   bool fresh_ = true;
@@ -104,14 +99,13 @@ class Wave final : public Law<N> {
 }  // namespace
 
 TipWall WaveLaw::wall(const LawSettings& p, const LawAtTip& at) {
-  return {line_at_tip(at.tip, at.weight * p.k_vc, at.weight * p.line(),
-                      (at.link.oldest() + 0.5) * at.loop.T),
+  return {line_at_tip(at.tip, p.k_vc, p.line(), (at.link.oldest() + 0.5) * at.loop.T),
           "the wall is felt through the spring k_vc and the line: 1/(1/k_vc + (link + T/2)/b)"};
 }
 
 FeltAtTip WaveLaw::felt(const LawSettings& p, const LawAtTip& at, double) {
   // The line adds a mass where it is not matched, and its own damper.
-  const double line = at.weight * p.line() / at.tip.lever2, b_v = at.felt.b_v;
+  const double line = p.line() / at.tip.lever2, b_v = at.felt.b_v;
   const double mass = at.link.oldest() * at.loop.T * (line - b_v * b_v / line);
   return {at.tip.led + mass, at.tip.damping + b_v + (p.wave_matched ? line : 0)};
 }

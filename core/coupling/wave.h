@@ -26,8 +26,8 @@
 namespace limpid {
 
 struct WaveLaw {
-  static constexpr std::array kSliders{"coupling.k_vc", "coupling.b_v", "coupling.per_joint",
-                                       "link.delay",    "link.jitter",  "link.loss"};
+  static constexpr std::array kSliders{"coupling.k_vc", "coupling.b_v", "link.delay", "link.jitter",
+                                       "link.loss"};
   static constexpr LawInfo kInfo{
       .key = "wave",
       .label = "Wave variables",

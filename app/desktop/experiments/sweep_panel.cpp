@@ -338,10 +338,14 @@ constexpr float kNumber = 4;   // width of the number beside a slider [em]
 constexpr const char* kClose = "Close (Esc)";
 constexpr float kLeastMap = 120;  // least height of the map [px at scale 1]
 
-// Draws a list of names; returns the index chosen.
+// Draws a list of names; returns the index chosen. A name may be wider than the list.
 template <class Name>
 std::size_t choose(const char* id, std::size_t chosen, std::size_t count, const Name& name) {
-  if (!ImGui::BeginCombo(id, name(chosen).c_str())) return chosen;
+  const std::string shown = name(chosen);
+  if (!ImGui::BeginCombo(id, shown.c_str())) {
+    tooltip(shown.c_str());
+    return chosen;
+  }
   for (std::size_t i = 0; i < count; ++i) {
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::Selectable(name(i).c_str(), i == chosen)) chosen = i;

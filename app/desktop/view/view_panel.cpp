@@ -267,7 +267,7 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
   }
   for (std::size_t run = 0; scene.split() && run < scene.pictures(); ++run) {
     draw_run_name(scene.names, run, part_of(rect, run, scene.pictures()), list);
-    below_names = 2.2f * font(Face::semibold)->FontSize;
+    below_names = run_name_room();
   }
   if (scene.blind) return;
   PictureLegend legend = legend_of(view, scene);

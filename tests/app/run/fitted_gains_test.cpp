@@ -163,6 +163,9 @@ TEST(FittedGains, GrowWithTheDampingOfTheJoints) {
   arm.delay = 0.001;
   arm.joints[1].damping = 0;
   EXPECT_FALSE(fitted(arm).per_joint) << "a joint was measured without damping";
+  arm.delay.reset();
+  arm.joints[1].damping = 1e-9;
+  EXPECT_FALSE(fitted(arm).per_joint) << "no spring is so weak that it would suit";
   arm.joints[1].damping = 0.5;
   Parameters moved, own;
   refit(moved, nullptr, &arm);

@@ -143,8 +143,6 @@ TEST(PromisesAtRandom, WavesGiveNothingThroughAnyLink) {
   expect_in_all_runs(Column::energy_total, 1e-9, [](unsigned seed) {
     Tapping t = test::at_random(seed, CouplingKind::wave);
     Random random(seed + 3'000'000);
-    if (seed % 2 == 0) damp_each_joint(t.arm, random);
-    t.p.per_joint = seed % 4 == 0;
     t.p.wave_b = random.log_between(0.1, 1) * own_damping(t.arm).minCoeff();
     return t;
   });

@@ -51,8 +51,12 @@ TEST(RecordedSettings, OfTwoRunsStandSideBySide) {
     const ParameterInfo& slider = *find_parameter(std::string(key));
     const auto there = std::ranges::any_of(
         both, [&](const RecordedSetting& each) { return each.help == slider.meaning; });
-    EXPECT_TRUE(there) << key;
+    EXPECT_EQ(there, slider.kind != FieldInfo::Kind::flag) << key;
   }
+  const std::string per_joint = find_parameter("coupling.per_joint")->caption;
+  EXPECT_EQ(find(both, per_joint), nullptr) << "off, as ever";
+  lanes[1].per_joint = true;
+  EXPECT_NE(find(recorded_settings(lanes), per_joint), nullptr);
 }
 
 }  // namespace
