@@ -369,6 +369,23 @@ except limpid.LimpidError as error:
 """, env={"PATH": "/usr/bin:/bin", "PYTHONPATH": str(bare), "PYTHONDONTWRITEBYTECODE": "1"})
         self.assertIn("limpid._loop", said)
 
+    def test_python_finds_its_own_scenes_where_there_is_no_program(self) -> None:
+        """As `pip install` puts them."""
+        prefix = self.directory / "pip"
+        packages = prefix / "lib/python3/site-packages"
+        shutil.copytree(self.modules() / "limpid", packages / "limpid")
+        shutil.copytree(self.prefix / "share/limpid/assets", prefix / "share/limpid/assets")
+        said = must(PYTHON, "-c", """
+import limpid
+print(len(limpid.Scene.read("cup.toml")), limpid.Arm.read("omni.urdf"))
+try:
+    limpid.Scene.read("cupp.toml")
+except limpid.LimpidError as error:
+    print(error)
+""", env={"PATH": "/nowhere", "PYTHONPATH": str(packages), "PYTHONDONTWRITEBYTECODE": "1"})
+        self.assertIn("4 Arm omni of 3 joints", said)
+        self.assertIn("cupp.toml: ", said)
+
 
 if __name__ == "__main__":
     unittest.main()
