@@ -6,6 +6,8 @@
 namespace limpid::test {
 
 // A drive without torque and damping on any of n joints.
-inline ProxyDrive<kAnyDof> no_drive(int n) { return {Vec<kAnyDof>::Zero(n), Vec<kAnyDof>::Zero(n)}; }
+inline ProxyDrive<kAnyDof> no_drive(int n) {
+  return {Vec<kAnyDof>::Zero(n), Vec<kAnyDof>::Zero(n)};
+}
 
 }  // namespace limpid::test
