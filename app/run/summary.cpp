@@ -103,8 +103,9 @@ std::string ForceTally::text(double tick) const {
   if (rows_ == 0) return "rows                     none: nothing was recorded\n";
   if (without_ == 0) return "force                    on all the time\n";
   const auto seconds = [&](std::uint64_t count) { return static_cast<double>(count) * tick; };
-  std::string text = fmt::format("force off or reduced     {:.3f} s of {:.3f} s, without fade-ins\n",
-                                 seconds(without_), seconds(rows_));
+  std::string text =
+      fmt::format("force off or reduced     {:.3f} s of {:.3f} s, without fade-ins\n",
+                  seconds(without_), seconds(rows_));
   for (const auto& [state, count] : ticks_) {
     text += fmt::format("  for {:8.3f} s         {}\n", seconds(count),
                         force_text(static_cast<ForceState>(state)));

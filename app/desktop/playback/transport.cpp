@@ -232,8 +232,8 @@ void live_controls(LiveStage& live, double tick, double& plot_length, const Act&
     act("coupling.next");
   }
   PlotGroup& group = live.stage().group;
-  if (button(group.following() ? "Freeze plots" : "Follow", "Freezes the plots, or lets them follow (X).",
-             !group.following())) {
+  if (button(group.following() ? "Freeze plots" : "Follow",
+             "Freezes the plots, or lets them follow (X).", !group.following())) {
     act("plots.freeze");
   }
   const double length = choose("##length", plot_length, {1, 2, 5, 10, 20, 30, 60}, " s");

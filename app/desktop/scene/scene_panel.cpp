@@ -217,7 +217,8 @@ void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescript
   std::string what(std::visit([&](auto& shape) { return edit(object, shape); }, object.shape));
   const bool coloured =
       !has_shape<Mesh>(object) && !has_shape<JointStop>(object) && !has_shape<Plane>(object);
-  if (coloured && edit_color(object.color, "Off: the object has the default colour.")) what = "color";
+  if (coloured && edit_color(object.color, "Off: the object has the default colour."))
+    what = "color";
   if (const auto moved = edit_body(object, document.scene(), place); !moved.empty()) what = moved;
   if (object.body) {
     if (const auto part = parts_.edit(object); !part.empty()) what = part;

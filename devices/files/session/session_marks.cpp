@@ -136,8 +136,8 @@ std::vector<Mark> read_marks(hid_t root, std::uint64_t rows, const fs::path& fil
   const Source texts_at = open_source(root, kMarkTextPath, 1, file);
   for (const Source* source : {&ticks_at, &texts_at}) {
     if (source->rows > kMostMarks) {
-      refuse(file,
-             fmt::format("{}: {} marks; allowed: at most {}", source->path, source->rows, kMostMarks));
+      refuse(file, fmt::format("{}: {} marks; allowed: at most {}", source->path, source->rows,
+                               kMostMarks));
     }
     claims.stored(source->dataset);
   }

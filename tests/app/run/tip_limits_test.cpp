@@ -87,8 +87,7 @@ TEST(TipLimits, OfThePredictiveLawCountStepsAndFriction) {
          "the tip can swing inside an encoder step");
   expect(named("falcon.urdf", 3.84e-4, kFromArm), 6500, "at this wall an encoder step");
   for (const char* file : {"omega.urdf", "inverse3.urdf"}) {
-    expect(named(file, 1e-4, kFromArm), 10000,
-           "no stiffer wall was tested with encoder steps");
+    expect(named(file, 1e-4, kFromArm), 10000, "no stiffer wall was tested with encoder steps");
   }
   EXPECT_NE(named("touch.urdf", 4.19e-4, 0).bound.find("0.26 N of friction the wall may have 27"),
             std::string::npos)
