@@ -11,9 +11,9 @@ namespace {
 constexpr double kSmooth = 0.005;  // filter of the judged velocity: encoders have steps [s]
 constexpr double kForget = 1;      // time constant of forgetting the energy put out [s]
 
-// Full force up to `limit`, none beyond `gone`.
+// Full force up to `limit`, none beyond `gone`, and none for a value that is no number.
 void fade(Objections& against, ForceState reason, double value, double limit, double gone) {
-  if (!(value > limit)) return;
+  if (value <= limit) return;
   const double part = std::max(0.0, (gone - value) / (gone - limit));
   if (part >= against.ceiling) return;
   against.ceiling = part;

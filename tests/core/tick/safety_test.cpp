@@ -102,6 +102,12 @@ TEST_F(SafeArm, FadesWithTheSpeedOfAJoint) {
   EXPECT_EQ(judge(1000), ForceState::on) << "it comes back by itself";
 }
 
+TEST_F(SafeArm, HasNoForceAtASpeedThatIsNoNumber) {
+  v.setConstant(std::nan(""));
+  EXPECT_EQ(judge(), ForceState::too_fast);
+  EXPECT_EQ(against.ceiling, 0);
+}
+
 TEST_F(SafeArm, FadesWithTheSpeedOfTheTip) {
   v = Vec3(0.6, 0.8, 0).head(2) * 2.5;  // halfway from 2 to 3 m/s
   EXPECT_EQ(judge(1000), ForceState::too_fast);
