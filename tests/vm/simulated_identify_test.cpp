@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "app/run/analysis.h"
 #include "app/run/fitted_gains.h"
 #include "tests/vm/simulated_identification.h"
 
@@ -102,8 +103,9 @@ Parameters suited(const ArmDescription& arm, double resolution) {
 // friction, and for each axis a spring and a push.
 class FreeMotion {
  public:
+  // b_v: of each axis [N m s/rad].
   void add(const UnlikeStick& stick, const SprungHand& axes, const Hand& hand, double t,
-           double b_v) {
+           const Eigen::VectorXd& b_v) {
     for (int i = 0; i < 2; ++i) {
       const AxisPhysics& axis = stick.axes[static_cast<std::size_t>(i)];
       const double v = axes.velocity(i), a = (v - before_[i]) / 1e-3, x = axes.position(i);
@@ -111,7 +113,7 @@ class FreeMotion {
       const double mean = 0.5 * (torque + torque_[i]);  // as the acceleration's, over the tick
       before_[i] = v, torque_[i] = torque;
       if (t < 3 || std::abs(v) < 0.05) continue;
-      const double inertia = axis.inertia * a, damping = (axis.friction + b_v) * v;
+      const double inertia = axis.inertia * a, damping = (axis.friction + b_v[i]) * v;
       const double first = i == 0 ? 1 : 0;
       Eigen::Vector<double, 7> row;
       row << inertia, damping, v > 0 ? 1 : -1, first * x, (1 - first) * x, first, 1 - first;
@@ -140,6 +142,8 @@ Felt felt_on(const UnlikeStick& stick, const ArmDescription& believed) {
                                        suited(believed, stick.layout.resolution));
     const Hand hand(desk.model->hand(), stick, pressing ? leaning : swinging);
     desk.armed = true;
+    const Parameters& p = desk.parameters;
+    const Eigen::VectorXd b_v = p.b_v * gain_weights(p, device_damping(believed, p));
     FreeMotion motion;
     double ef = 0, ff = 0;
     for (int ms = 1; ms <= 5000; ++ms) {
@@ -150,8 +154,7 @@ Felt felt_on(const UnlikeStick& stick, const ArmDescription& believed) {
       const ForceState why = desk.rig.force_state();
       const bool still = pressing && why == ForceState::frozen;
       if (ms > 1000) out.force = out.force && (why == ForceState::on || still);
-      if (!pressing)
-        motion.add(stick, desk.model->hand(), hand, 1e-3 * (ms - 1), desk.parameters.b_v);
+      if (!pressing) motion.add(stick, desk.model->hand(), hand, 1e-3 * (ms - 1), b_v);
       out.energy = std::max(out.energy, desk.row.at(k, Column::energy_total) -
                                             desk.row.at(k, Column::energy_compensation));
       const double f = desk.row.vec(k, Column::contact_torque).norm();

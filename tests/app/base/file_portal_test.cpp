@@ -87,7 +87,7 @@ class Desk {
 
   std::optional<Call> call() {
     std::optional<Call> found;
-    within(5s, [&] {
+    within(1min, [&] {
       dbus_connection_read_write(bus_.get(), 0);
       BusMessage message(dbus_connection_pop_message(bus_.get()));
       if (!message || dbus_message_get_type(message.get()) != DBUS_MESSAGE_TYPE_METHOD_CALL) {
@@ -201,7 +201,7 @@ class AFilePortal : public testing::Test {
     EXPECT_TRUE(becomes(State::shown));
     return call;
   }
-  bool becomes(State state, std::chrono::milliseconds time = 5s) {
+  bool becomes(State state, std::chrono::milliseconds time = 1min) {
     return within(time, [&] { return portal_->state() == state; });
   }
   // Returns whether the dialog of this handle is closed.
@@ -258,7 +258,7 @@ TEST_F(AFilePortal, IsHeardUnderTheHandleThatItChooses) {
   ASSERT_TRUE(call);
   const std::string handle = "/org/freedesktop/portal/desktop/request/own/1";
   desk_->reply(*call, handle);
-  EXPECT_TRUE(within(5s, [&] {
+  EXPECT_TRUE(within(1min, [&] {
     desk_->respond(handle, 0, "file:///a.toml");
     return portal_->state() == State::chosen;
   }));

@@ -16,6 +16,7 @@
 #include "app/base/session_bus.h"
 #include "tests/support/private_bus.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -48,10 +49,7 @@ class OpenedElsewhere : public testing::Test {
     fs::permissions(program, fs::perms::owner_all);
   }
   std::string opened() const {
-    const auto end = std::chrono::steady_clock::now() + 5s;
-    while (!fs::exists(dir_ / "opened") && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(2ms);
-    }
+    test::until([this] { return fs::exists(dir_ / "opened"); });
     std::ifstream in(dir_ / "opened");
     return {std::istreambuf_iterator<char>(in), {}};
   }

@@ -9,6 +9,7 @@
 
 #include "devices/identify/grip_probe.h"
 #include "tests/support/built_in.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -30,9 +31,8 @@ class AGripMeter : public testing::Test {
   }
   // Turns until so many more ticks have gone by, or `done`.
   bool pass(std::uint64_t ticks, const std::function<bool()>& done = {}) {
-    const auto end = std::chrono::steady_clock::now() + 25s;
-    const std::uint64_t until = ticks_ + ticks;
-    while (std::chrono::steady_clock::now() < end) {
+    const std::uint64_t last = ticks_ + ticks;
+    return test::until([&] {
       session_.turn([this](LaneRows rows, std::uint64_t) {
         meter_.take(rows[kMainLane]);
         const auto force = session_.loop().layout().in(rows[kMainLane], Column::excitation);
@@ -40,10 +40,8 @@ class AGripMeter : public testing::Test {
         ++ticks_;
       });
       meter_.update();
-      if (done ? done() : ticks_ >= until) return true;
-      std::this_thread::sleep_for(2ms);
-    }
-    return false;
+      return done ? done() : ticks_ >= last;
+    });
   }
   bool pushed_since() {
     pushed_ = false;

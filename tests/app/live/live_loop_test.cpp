@@ -23,6 +23,7 @@
 #include "tests/support/random_arm.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/test_session.h"
+#include "tests/support/until.h"
 #include "tests/support/wired_device.h"
 
 namespace limpid {
@@ -558,16 +559,14 @@ TEST(LiveLoop, TakesAPressAfterATripForNone) {
     loop.update();
     return loop.snapshot().arming;
   };
-  const auto until = [&](Arming wanted) {
-    for (int i = 0; i < 1000 && frame() != wanted; ++i) {
-    }
-    return loop.snapshot().arming == wanted;
+  const auto becomes = [&](Arming wanted) {
+    return test::until([&] { return frame() == wanted; }, [] {});
   };
   for (int i = 0; i < 20; ++i) EXPECT_EQ(frame(), Arming::off);
   EXPECT_TRUE(loop.toggle_force());
-  ASSERT_TRUE(until(Arming::on));
+  ASSERT_TRUE(becomes(Arming::on));
   wire->here = false;
-  ASSERT_TRUE(until(Arming::tripped));
+  ASSERT_TRUE(becomes(Arming::tripped));
   wire->here = true;
   const auto tripped = std::chrono::steady_clock::now();
   EXPECT_FALSE(loop.toggle_force());
@@ -575,7 +574,7 @@ TEST(LiveLoop, TakesAPressAfterATripForNone) {
     EXPECT_EQ(frame(), Arming::tripped);
   }
   EXPECT_TRUE(loop.toggle_force());
-  EXPECT_TRUE(until(Arming::on));
+  EXPECT_TRUE(becomes(Arming::on));
 }
 
 TEST(LiveLoop, StopsItsDeviceBeforeItHandsItOver) {
@@ -796,14 +795,14 @@ TEST(LiveLoop, TakesItsForceAwayWhenNobodySetsItsControls) {
     loop.update();
     return loop.snapshot().arming;
   };
-  for (int i = 0; i < 700 && state() != Arming::on; ++i) {
-    if (state() == Arming::off || state() == Arming::tripped) loop.arm();
-    loop.set({});
-    std::this_thread::sleep_for(5ms);
-  }
-  ASSERT_EQ(state(), Arming::on);
-  for (int i = 0; i < 2000 && state() != Arming::tripped; ++i) std::this_thread::sleep_for(5ms);
-  EXPECT_EQ(state(), Arming::tripped);
+  ASSERT_TRUE(test::until([&] { return state() == Arming::on; },
+                          [&] {
+                            const Arming now = state();
+                            if (now == Arming::off || now == Arming::tripped) loop.arm();
+                            loop.set({});
+                            std::this_thread::sleep_for(5ms);
+                          }));
+  ASSERT_TRUE(test::until([&] { return state() == Arming::tripped; }));
   EXPECT_EQ(loop.snapshot().force_state, ForceState::unwatched);
 }
 

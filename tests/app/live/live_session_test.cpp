@@ -11,6 +11,7 @@
 #include "tests/support/built_in.h"
 #include "tests/support/fake_device.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -27,21 +28,18 @@ class ALiveSession : public testing::Test {
     session_->open(plan_.arm, plan_.document.scene, plan_.parameters, Vec3(0.19, 0, 0));
   }
 
-  // Turns until `done`, for ten seconds at most.
+  // Turns until `done`.
   template <class Done>
   bool turn_until(Done done) {
-    const auto end = std::chrono::steady_clock::now() + 10s;
-    while (std::chrono::steady_clock::now() < end) {
+    return test::until([&] {
       news_ = session_->turn([this](LaneRows rows, std::uint64_t tick) {
         ticks_.insert(tick);
         last_.clear();
         for (const auto& row : rows) last_.push_back(row[0]);
       });
       if (!news_.failure.empty()) failure_ = news_.failure;
-      if (done()) return true;
-      std::this_thread::sleep_for(2ms);
-    }
-    return false;
+      return done();
+    });
   }
   bool some_ticks() {
     const std::size_t wanted = ticks_.size() + 30;

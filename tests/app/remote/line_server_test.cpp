@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -75,15 +76,11 @@ class Peer {
 class LineServerTest : public testing::Test {
  protected:
   std::optional<LineServer::Event> event() {
-    const auto end = std::chrono::steady_clock::now() + 5s;
-    server->wait_until(end);
+    server->wait_until(std::chrono::steady_clock::now() + 1min);
     return server->take();
   }
   void wait_for_clients(std::size_t count) const {
-    const auto end = std::chrono::steady_clock::now() + 5s;
-    while (server->clients() != count && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(1ms);
-    }
+    test::until([&] { return server->clients() == count; });
     ASSERT_EQ(server->clients(), count);
   }
 
@@ -93,9 +90,7 @@ class LineServerTest : public testing::Test {
         path, [this](std::string_view line) { cut = cut || line == "cut"; });
   }
   bool cut_is_heard() const {
-    const auto end = std::chrono::steady_clock::now() + 5s;
-    while (!cut && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
-    return cut;
+    return test::until([this] { return cut.load(); });
   }
 
   std::atomic<bool> cut{false};

@@ -12,6 +12,7 @@
 #include "tests/support/built_in.h"
 #include "tests/support/line_client.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -52,13 +53,14 @@ class RemoteTest : public testing::Test {
   void say(const std::string& line) const { client->say(line); }
   // Next line, after turns of the owner.
   json hear() {
-    const auto end = std::chrono::steady_clock::now() + 5s;
-    while (std::chrono::steady_clock::now() < end) {
+    std::optional<json> line;
+    const auto heard = [&] {
       remote->turn();
-      if (auto line = client->take()) return *line;
-      remote->wait_until(std::chrono::steady_clock::now() + 1ms);
-    }
-    return json();
+      if (auto next = client->take()) line = *next;
+      return line.has_value();
+    };
+    test::until(heard, [this] { remote->wait_until(std::chrono::steady_clock::now() + 1ms); });
+    return line.value_or(json());
   }
   void pass(std::uint64_t tick) {
     const std::span<const double> first(row);
@@ -192,8 +194,7 @@ TEST_F(RemoteTest, AnswersLaterWhatTakesItsTimeAndMeanwhileTheRest) {
 TEST_F(RemoteTest, CutsBeforeTheOwnerHasItsTurn) {
   start();
   say(R"({"do":"cut"})");
-  const auto end = std::chrono::steady_clock::now() + 5s;
-  while (cuts == 0 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
+  test::until([this] { return cuts != 0; });
   EXPECT_EQ(cuts, 1);
   EXPECT_TRUE(hear().contains("ok"));
 }
@@ -278,11 +279,11 @@ TEST_F(RemoteTest, ForgetsAClientThatIsGone) {
   ask(R"({"do":"follow","channels":["coupling/eta"]})");
   say(R"({"do":"record"})");
   client->leave();
-  const auto end = std::chrono::steady_clock::now() + 5s;
-  while (gone == 0 && std::chrono::steady_clock::now() < end) {
-    remote->turn();
-    remote->wait_until(std::chrono::steady_clock::now() + 1ms);
-  }
+  test::until([this] { return gone != 0; },
+              [this] {
+                remote->turn();
+                remote->wait_until(std::chrono::steady_clock::now() + 1ms);
+              });
   EXPECT_EQ(gone, 1);
   pass(1);
   remote->turn();

@@ -9,6 +9,7 @@
 #include "tests/support/built_in.h"
 #include "tests/support/line_client.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 #include "tests/support/wired_device.h"
 
 namespace limpid {
@@ -59,12 +60,8 @@ class Served : public testing::Test {
   }
   template <class Done>
   bool until(const Done& done) {
-    const auto end = std::chrono::steady_clock::now() + 10s;
-    while (std::chrono::steady_clock::now() < end) {
-      turn();
-      if (done()) return true;
-    }
-    return false;
+    turn();
+    return test::until(done, [this] { turn(); });
   }
   json answer(const json& request) {
     client->say(request.dump());

@@ -9,6 +9,7 @@
 #include "devices/simulated/rig.h"
 #include "tests/support/inverse_service.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -26,16 +27,16 @@ std::unique_ptr<Device> open_inverse(const ServiceAddress& address, const std::s
 
 // Takes the loop's part: a tick about every millisecond, until the condition holds.
 bool turn(Device& device, const std::vector<double>& torque,
-          const std::function<bool(const DeviceReading&, bool here)>& until) {
-  const auto end = std::chrono::steady_clock::now() + 60s;
-  for (;;) {
+          const std::function<bool(const DeviceReading&, bool here)>& done) {
+  const auto read = [&] {
     DeviceReading reading;
     const bool here = device.read(reading);
-    if (until(reading, here)) return true;
-    if (std::chrono::steady_clock::now() > end) return false;
+    return done(reading, here);
+  };
+  return test::until(read, [&] {
     device.write(torque);
     std::this_thread::sleep_for(1ms);
-  }
+  });
 }
 
 // Ticks for so many milliseconds as if nothing had happened; returns whether the condition held.

@@ -22,6 +22,7 @@
 #include "tests/support/random_arm.h"
 #include "tests/support/rows.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -29,16 +30,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kSpring = 0.5;  // spring of each of the client's joints [N m/rad]
-
-// Polls, as the machine may be busy; fails if the condition never holds.
-bool comes(const std::function<bool()>& condition) {
-  const auto end = std::chrono::steady_clock::now() + 60s;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
 
 struct ASocketDevice : testing::Test {
   explicit ASocketDevice(const char* version = "1") {
@@ -58,7 +49,8 @@ struct ASocketDevice : testing::Test {
   }
   FoundDevice find() const {
     std::vector<FoundDevice> found;
-    EXPECT_TRUE(comes([&] { return !(found = list_socket_devices(socket_folder())).empty(); }));
+    EXPECT_TRUE(
+        test::until([&] { return !(found = list_socket_devices(socket_folder())).empty(); }));
     return found.at(0);
   }
 
@@ -117,7 +109,7 @@ TEST_F(ASocketDevice, SaysWhatItIs) {
 TEST_F(ASocketDevice, GivesWayToItsTorqueAsASpringDoes) {
   Connection to(find().place.path);
   const double torque[] = {0.1, -0.05};
-  EXPECT_TRUE(comes([&] {
+  EXPECT_TRUE(test::until([&] {
     to.turn(torque);
     return std::abs(to.reading.x[0] - 0.1 / kSpring) < 0.01 &&
            std::abs(to.reading.x[1] + 0.05 / kSpring) < 0.01;
@@ -133,19 +125,19 @@ TEST_F(ASocketDeviceOfVersion2, GivesWayToItsTorqueAsASpringDoes) {
   EXPECT_EQ(to.protocol.traits().made_by, "limpid_device.py");
   EXPECT_EQ(to.protocol.traits().slides, (std::vector<bool>{false, false}));
   const double torque[] = {0.1, -0.05};
-  EXPECT_TRUE(comes([&] {
+  EXPECT_TRUE(test::until([&] {
     to.turn(torque);
     return std::abs(to.reading.x[0] - 0.1 / kSpring) < 0.01 &&
            std::abs(to.reading.x[1] + 0.05 / kSpring) < 0.01;
   }));
-  EXPECT_TRUE(comes([&] { return to.turn(nullptr) && std::abs(to.reading.x[0]) < 0.01; }));
+  EXPECT_TRUE(test::until([&] { return to.turn(nullptr) && std::abs(to.reading.x[0]) < 0.01; }));
 }
 
 TEST_F(ASocketDevice, HasNoTorqueOnceItHearsNothingMore) {
   Connection to(find().place.path);
   const double torque[] = {0.1, 0.1};
-  ASSERT_TRUE(comes([&] { return to.turn(torque) && to.reading.x[0] > 0.1; }));
-  EXPECT_TRUE(comes([&] { return to.turn(nullptr) && std::abs(to.reading.x[0]) < 0.01; }));
+  ASSERT_TRUE(test::until([&] { return to.turn(torque) && to.reading.x[0] > 0.1; }));
+  EXPECT_TRUE(test::until([&] { return to.turn(nullptr) && std::abs(to.reading.x[0]) < 0.01; }));
 }
 
 TEST_F(ASocketDevice, HasNoTorqueOnceTheConnectionEnds) {
@@ -153,17 +145,18 @@ TEST_F(ASocketDevice, HasNoTorqueOnceTheConnectionEnds) {
   const double torque[] = {0.1, 0.1};
   {
     Connection to(found.place.path);
-    ASSERT_TRUE(comes([&] { return to.turn(torque) && to.reading.x[0] > 0.1; }));
+    ASSERT_TRUE(test::until([&] { return to.turn(torque) && to.reading.x[0] > 0.1; }));
   }
   std::optional<Connection> again;
-  ASSERT_TRUE(comes([&] {  // the client may not have noticed yet
+  ASSERT_TRUE(test::until([&] {  // the client may not have noticed yet
     try {
       again.emplace(found.place.path);
     } catch (const HidError&) {
     }
     return again.has_value();
   }));
-  EXPECT_TRUE(comes([&] { return again->turn(nullptr) && std::abs(again->reading.x[0]) < 0.01; }));
+  EXPECT_TRUE(
+      test::until([&] { return again->turn(nullptr) && std::abs(again->reading.x[0]) < 0.01; }));
 }
 
 TEST_F(ASocketDevice, SpeaksToOneProgramAtATime) {
@@ -182,8 +175,8 @@ TEST_F(ASocketDevice, SpeaksToOneProgramAtATime) {
   EXPECT_EQ(linked.claim_key(linked), found.claim_key(found));
   EXPECT_THROW(open_device(linked), HidError);
   DeviceReading before, after;
-  ASSERT_TRUE(comes([&] { return device->read(before) && before.count > 0; }));
-  EXPECT_TRUE(comes([&] { return device->read(after) && after.count > before.count + 20; }))
+  ASSERT_TRUE(test::until([&] { return device->read(before) && before.count > 0; }));
+  EXPECT_TRUE(test::until([&] { return device->read(after) && after.count > before.count + 20; }))
       << "nothing has disturbed it";
 }
 
@@ -232,9 +225,9 @@ TEST_F(ASocketDevice, IsDrivenByTheLoopAndLostWithoutForceWhenItsProgramIsKilled
     return rows.vec(last, Column::motor_torque)[0] < -0.01 &&
            rows.vec(last, Column::measured_position)[0] < -0.01;
   };
-  EXPECT_TRUE(comes(step)) << "pushed back, and it went";
+  EXPECT_TRUE(test::until(step)) << "pushed back, and it went";
   kill_client();
-  EXPECT_TRUE(comes([&] {
+  EXPECT_TRUE(test::until([&] {
     step();
     return rig.force_state() == ForceState::lost;
   }));

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -34,11 +35,8 @@ int play(const std::vector<std::string>& words) {
   std::ofstream out(words.at(4));
   if (how == "words") {
     for (const std::string& word : words) out << word << '\n';
-    const auto end = std::chrono::steady_clock::now() + 20s;
-    while (getpriority(PRIO_PROCESS, 0) < 10 && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(1ms);
-    }
-    out << (getpriority(PRIO_PROCESS, 0) < 10 ? "urgent\n" : "at its ease\n");
+    const bool eased = test::until([] { return getpriority(PRIO_PROCESS, 0) >= 10; });
+    out << (eased ? "at its ease\n" : "urgent\n");
     return 0;
   }
   if (how == "fails") {
@@ -51,10 +49,7 @@ int play(const std::vector<std::string>& words) {
   if (how == "waits") {
     std::signal(SIGTERM, [](int) { interrupts = interrupts + 1; });
     say("0.25");
-    const auto end = std::chrono::steady_clock::now() + 20s;
-    while (interrupts == 0 && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(5ms);
-    }
+    test::until([] { return interrupts != 0; });
     std::this_thread::sleep_for(400ms);  // it clears up
     out << interrupts;
     return 1;
@@ -93,9 +88,7 @@ TEST_F(AFilm, IsStoppedOnceAndClearsUpAlsoWhereSigintIsIgnored) {
   const auto usual = std::signal(SIGINT, SIG_IGN);
   bool made = true;
   std::thread film([&] { made = make("waits"); });
-  const auto end = std::chrono::steady_clock::now() + 20s;
-  while (part_ != 0.25 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
-  EXPECT_EQ(part_, 0.25) << "it is told while it goes on";
+  EXPECT_TRUE(test::until([&] { return part_ == 0.25; })) << "it is told while it goes on";
   stop_ = true;
   film.join();
   std::signal(SIGINT, usual);

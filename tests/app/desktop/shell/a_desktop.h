@@ -18,6 +18,7 @@
 #include "tests/support/computer.h"
 #include "tests/support/faultless_context.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 #include "tests/support/wired_device.h"
 
 namespace limpid {
@@ -44,12 +45,7 @@ struct ADesktop : testing::Test {
   }
   template <class Done>
   bool until(Done done) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (std::chrono::steady_clock::now() < end) {
-      if (done()) return true;
-      frames(1);
-    }
-    return done();
+    return test::until(done, [this] { frames(1); });
   }
   LiveLoop& loop() const { return desktop->live.loop(); }
   Document& document() const { return desktop->document; }

@@ -22,6 +22,7 @@
 #include "tests/support/drawn_text.h"
 #include "tests/support/faultless_context.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 
@@ -80,12 +81,7 @@ class WholeWindow : public testing::Test {
   }
   template <class Done>
   bool until(Done done) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (std::chrono::steady_clock::now() < end) {
-      if (done()) return true;
-      frames(1);
-    }
-    return done();
+    return test::until(done, [this] { frames(1); });
   }
   void run(const char* command) {
     EXPECT_EQ(run_command(command, *desktop), "") << command;
