@@ -39,8 +39,8 @@ install(FILES ${PROJECT_BINARY_DIR}/limpidConfig.cmake ${PROJECT_BINARY_DIR}/lim
 install(FILES ${PROJECT_BINARY_DIR}/limpid.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
   COMPONENT dev)
 install(DIRECTORY library/examples/ DESTINATION share/doc/limpid/examples/library COMPONENT dev)
-# Packages of the library have the program's licence and changes.
-file(CREATE_LINK limpid ${PROJECT_BINARY_DIR}/doc_of_limpid SYMBOLIC)
+# Packages of the library have the licence and changes of what they depend on.
+file(CREATE_LINK limpid-common ${PROJECT_BINARY_DIR}/doc_of_limpid SYMBOLIC)
 install(FILES ${PROJECT_BINARY_DIR}/doc_of_limpid DESTINATION share/doc RENAME liblimpid-dev
   COMPONENT dev)
 install(FILES ${PROJECT_BINARY_DIR}/doc_of_limpid DESTINATION share/doc

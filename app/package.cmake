@@ -2,13 +2,31 @@
 set(desktop ${PROJECT_SOURCE_DIR}/assets/desktop)
 set(package ${PROJECT_SOURCE_DIR}/assets/package)
 
+# Builds all that is installed; the target limpid is the program alone.
+add_custom_target(installed)
+add_dependencies(installed limpid liblimpid)
+if(TARGET limpid_loop)
+  add_dependencies(installed limpid_loop)
+endif()
+
 # The manual has the READMEs of sweeps and stories, with pictures that are not beside them here.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/assets ${PROJECT_SOURCE_DIR}/shaders
   DESTINATION share/limpid
   REGEX "/assets/(completions|desktop|package|pictures|python)$" EXCLUDE
+  REGEX "/assets/(devices|hands|scenes)$" EXCLUDE
   REGEX "/assets/(stories|sweeps)/README.md$" EXCLUDE
   PATTERN "*.py" EXCLUDE
   PATTERN "__pycache__" EXCLUDE)
+# The library needs these as well, and the programs that read sessions and models.
+set(common ${PROJECT_SOURCE_DIR}/assets)
+install(DIRECTORY ${common}/devices ${common}/hands ${common}/scenes
+  DESTINATION share/limpid/assets COMPONENT common
+  PATTERN "*.py" EXCLUDE
+  PATTERN "__pycache__" EXCLUDE)
+install(FILES ${package}/copyright DESTINATION share/doc/limpid-common COMPONENT common)
+install(CODE "set(SOURCE \"${PROJECT_SOURCE_DIR}\")\nset(BUILD \"${PROJECT_BINARY_DIR}\")
+include(\${SOURCE}/app/install_changes.cmake)
+pack_changes(limpid-common)" COMPONENT common)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/made/icons DESTINATION share)  # see app/CMakeLists.txt
 install(FILES ${desktop}/limpid.desktop DESTINATION share/applications)
 install(FILES ${desktop}/limpid.xml DESTINATION share/mime/packages)
@@ -66,10 +84,15 @@ without a window.")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_CONTROL_EXTRA
   ${package}/postinst ${package}/postrm ${package}/conffiles)
-# Three packages: the program, the library, and what other programs are built with it by.
+# Four packages: the program, the library, what both need, and what other programs are built with
+# it by.
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL Unspecified library dev)
+set(CPACK_COMPONENTS_ALL Unspecified common library dev)
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME limpid)
+set(CPACK_DEBIAN_COMMON_PACKAGE_NAME limpid-common)
+set(CPACK_DEBIAN_COMMON_DESCRIPTION "arms, scenes and readers of files for Limpid
+Arms and scenes that come with Limpid and with its library, recorded hands, and
+the programs that read sessions and models for both.")
 set(limpid_library_package liblimpid${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${limpid_library_package})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)

@@ -14,6 +14,7 @@
 #include "app/run/provenance.h"
 #include "app/run/replay.h"
 #include "app/run/tip_limits.h"
+#include "app/run/wall_trial.h"
 #include "devices/files/session/session_units.h"
 
 namespace limpid {
@@ -24,7 +25,7 @@ struct AnalyzeOptions {
   std::optional<double> band, mass;
   std::vector<double> grip;  // from, to [N/m]; empty: none
   std::string grip_of;       // session in which the grip was measured; empty: none
-  bool json = false, all = false;
+  bool json = false, all = false, no_trial = false;
 };
 
 // Unit of an arm's dampers, and how many make one of the settings'.
@@ -87,7 +88,18 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
 
 constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]
 
-void print(const TipLimits& tip, const Parameters& p, bool all) {
+void print(const WallTrial& trial) {
+  if (trial.held > 0) {
+    fmt::print("  held in simulated presses {:>6.0f} N/m", trial.held);
+  } else {
+    fmt::print("  held in simulated presses   none   ");
+  }
+  fmt::print("  {}\n", trial.fault.empty() ? "tapped, pressed slowly and rubbed in three grips"
+                                           : "not " + trial.fault);
+}
+
+void print(const TipLimits& tip, const std::optional<WallTrial>& trial, const Parameters& p,
+           bool all) {
   const std::vector<CouplingKind> told = laws_told(p.kind, all);
   fmt::print(
       "\nat the tip: mass {:.3g} g, own damping {:.3g} N s/m; mass {:.3g} g if a hand moves the "
@@ -96,6 +108,7 @@ void print(const TipLimits& tip, const Parameters& p, bool all) {
   for (const CouplingKind kind : told) {
     const TipWall& wall = tip.wall(kind);
     fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", name(kind), wall.stiffness, wall.bound);
+    if (trial && kind == p.kind) print(*trial);
   }
   fmt::print(
       "stiffest wall, in any hand {:>6.0f} N/m  a wall that is a simple spring is passive up to "
@@ -118,7 +131,8 @@ void print(const TipLimits& tip, const Parameters& p, bool all) {
   }
 }
 
-nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
+nlohmann::ordered_json as_json(const TipLimits& tip, const std::optional<WallTrial>& trial,
+                               const Parameters& p) {
   nlohmann::ordered_json json{
       {"mass", tip.tip.mass},        {"led_mass", tip.tip.led},
       {"damping", tip.tip.damping},  {"every_hand", tip.every_hand},
@@ -133,6 +147,9 @@ nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
       law["felt_damping"].push_back(felt.damping);
     }
     json[kLawKeys[i]] = law;
+  }
+  if (trial) {
+    json["trial"] = {{"wall", trial->named}, {"held", trial->held}, {"fault", trial->fault}};
   }
   return json;
 }
@@ -154,6 +171,8 @@ nlohmann::ordered_json units(const char* damper) {
           {"tip.least_damping", "N s/m"},
           {"tip.frequency", "Hz"},
           {"tip.delay_most", "ticks"},
+          {"tip.trial.wall", "N/m"},
+          {"tip.trial.held", "N/m"},
           {"tip.LAW.wall", "N/m"},
           {"tip.LAW.felt_mass", "kg"},
           {"tip.LAW.felt_damping", "N s/m"}};
@@ -213,12 +232,16 @@ int analyze_command(const AnalyzeOptions& options) {
   const std::string still = still_tip(arm);
   const std::optional<TipLimits> tip =
       still.empty() ? std::optional(tip_limits(arm, of.pose, p, of.document.scene)) : std::nullopt;
+  std::optional<WallTrial> trial;
+  if (tip && tip->wall(p.kind).stiffness > 0 && !options.mass && !options.no_trial) {
+    trial = try_wall(arm, of.pose, p, tip->wall(p.kind).stiffness);
+  }
   const std::optional<InHands> hands = judged_in_hands(options, of, a, tip);
   if (!options.json) {
     if (of.hand) print_measured(*of.hand);
     print(a, arm, p);
     if (options.mass) return 0;
-    if (tip) print(*tip, p, options.all);
+    if (tip) print(*tip, trial, p, options.all);
     if (hands) print_in_hands(*hands, laws_told(p.kind, options.all));
     if (!tip) fmt::print("\n{}\n", still);
     return 0;
@@ -246,7 +269,7 @@ int analyze_command(const AnalyzeOptions& options) {
   json["delay"] = a.delay;
   json["link"] = a.link;
   json["measured"] = a.measured;
-  if (!options.mass) json["tip"] = tip ? as_json(*tip, p) : nlohmann::ordered_json(nullptr);
+  if (!options.mass) json["tip"] = tip ? as_json(*tip, trial, p) : nlohmann::ordered_json(nullptr);
   json["units"] = units(unit.name);
   if (of.hand) {
     json["measured_grip"] = measured_json(*of.hand);
@@ -265,7 +288,7 @@ int analyze_command(const AnalyzeOptions& options) {
 Command declare_analyze(CLI::App& app) {
   auto* command = app.add_subcommand("analyze",
                                      "computes eta_min, the stiffest stable wall, and the inertia "
-                                     "and damping felt, for each law, without simulation");
+                                     "and damping felt, for each law");
   auto options = std::make_shared<AnalyzeOptions>();
   options->input.add_world(*command);
   options->input.add_readings(*command);
@@ -310,6 +333,8 @@ Command declare_analyze(CLI::App& app) {
   command->add_flag(
       "--all", options->all,
       "also print the laws that are only for comparison; JSON always contains these laws");
+  command->add_flag("--no-trial", options->no_trial,
+                    "do not simulate presses on the wall named for the chosen law");
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(parameter_help());
   return [options] { return analyze_command(*options); };

@@ -123,7 +123,7 @@ KnownNumber encoder_number(const Source& source, const InputOptions& input, Para
 
 KnownNumber delay_number(const Source& source, const InputOptions& input, Parameters& p) {
   KnownNumber number{"delay",
-                     "delay from a reading to the torque computed from it, in addition to the tick",
+                     "delay from a reading to the torque computed from it, without the tick",
                      "ms",
                      0,
                      {}};

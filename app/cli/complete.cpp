@@ -13,7 +13,8 @@ namespace limpid {
 namespace {
 
 std::vector<HelpWord> known_device_words() {
-  std::vector<HelpWord> words{{"simulated", "a simulated device that differs from its file"}};
+  std::vector<HelpWord> words{
+      {"simulated", "a simulated device whose values differ from its file"}};
   try {
     for (const FoundDevice& found : DeviceHub::look()) {
       words.push_back({found.place.id, found.place.name});

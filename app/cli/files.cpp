@@ -289,6 +289,7 @@ struct RecoverOptions {
 };
 
 int recover(const RecoverOptions& options) {
+  if (!options.out.empty()) check_ending(options.out, kSessionEnding);
   const Recovered recovered = recover_session(options.part, options.force, options.out);
   fmt::print("{} ticks recovered in {}\n", recovered.rows, recovered.file.string());
   return 0;

@@ -320,7 +320,7 @@ Command declare_identify(CLI::App& app) {
   command->add_option(
       "DEVICE", options->device,
       fmt::format("the device's id, as `limpid devices` lists it, or \"{}\": a simulated device "
-                  "that differs from its file, drawn by --seed; default: the device in use",
+                  "whose values differ from its file, drawn by --seed; default: the device in use",
                   kSimulated));
   options->input.add_world(*command);
   command

@@ -28,7 +28,9 @@
 #include "app/run/run_watch.h"
 #include "app/run/simulate.h"
 #include "app/run/summary.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/config_file.h"
+#include "devices/files/session/session.h"
 #include "devices/identify/grip_probe.h"
 
 namespace limpid {
@@ -129,14 +131,18 @@ void finish(Recorder& recorder) {
 void check_outputs(const RunOptions& options) {
   keep_apart("--record", options.record, options.input);
   const std::filesystem::path png = options.picture;
+  if (!png.empty()) {
+    keep_apart("--picture", png, options.input);
+    keep_outputs_apart("--record", options.record, "--picture", png);
+  }
+  if (!options.record.empty()) check_ending(options.record, kSessionEnding);
   if (png.empty()) return;
-  keep_apart("--picture", png, options.input);
-  keep_outputs_apart("--record", options.record, "--picture", png);
   const auto refuse = [&](int code) {
     throw UsageError(fmt::format("--picture {}: {}", png.string(), std::strerror(code)));
   };
   const std::filesystem::path folder = png.has_parent_path() ? png.parent_path() : ".";
   if (std::filesystem::is_directory(png)) refuse(EISDIR);
+  check_ending(png, ".png");
   if (access((folder / ".").c_str(), W_OK | X_OK) != 0) refuse(errno);
   if (!options.force && std::filesystem::exists(png)) {
     throw UsageError(

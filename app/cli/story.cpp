@@ -13,6 +13,7 @@
 #include "app/run/run_watch.h"
 #include "app/story/run_story.h"
 #include "devices/files/atomic_file.h"
+#include "devices/files/session/session.h"
 #include "devices/files/session/session_units.h"
 
 namespace limpid {
@@ -70,7 +71,10 @@ int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
     print_steps(story);
     return 0;
   }
-  if (!options.record.empty()) check_place(options.record, options.video.force);
+  if (!options.record.empty()) {
+    check_ending(options.record, kSessionEnding);
+    check_place(options.record, options.video.force);
+  }
   const StoryRun run = tell_with_progress(story);
   print_numbers(story, run.session);
   if (!options.record.empty()) {

@@ -278,9 +278,10 @@ BodyFindings tips_over(double tick) {
             .measured = (stands + falls) / 2 / degree,
             .limit = 1,
             .conditions =
-                "Theory: atan(width / height). A block of 20 x 20 x 40 mm and 50 g, friction 1.5, "
-                "is placed at rest on contacts of 1e6 N/m and must fall over in 1.5 s or less. On "
-                "softer contacts the block swings to and fro and falls over earlier."}}};
+                "Theory: the slope is atan(width / height). A block of 20 x 20 x 40 mm and 50 g, "
+                "friction 1.5, is placed at rest on the slope, on contacts of 1e6 N/m. The block "
+                "tips over if it falls within 1.5 s. On softer contacts the block rocks and tips "
+                "over at a smaller slope."}}};
 }
 
 // Cubes one on the other.

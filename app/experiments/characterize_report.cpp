@@ -51,11 +51,13 @@ std::string walls_section(const Characterization& found) {
   }
   return table_of(
       "Walls",
-      fmt::format("First columns: the stiffest wall that feels as stiff as set and stays quiet, "
-                  "and the stiffest wall that `limpid analyze` computes. Last columns: four hands "
-                  "with different grips touch a wall of {} N/m. The columns show the stiffness "
-                  "that a hand feels, and the largest energy that a hand is given.",
-                  kCommonWall),
+      fmt::format(
+          "Stiffest wall: the stiffest wall that feels as stiff as it is set and does not "
+          "vibrate. Computed by analyze: the stiffest wall that `limpid analyze` computes. "
+          "Felt and Given to a hand: four hands with different grips touch a wall of {} "
+          "N/m. Felt is the stiffness that these hands feel. Given to a hand is the largest "
+          "energy that one of these hands gets.",
+          kCommonWall),
       "<th>Law</th><th class=\"number\">Stiffest wall [N/m]</th><th class=\"number\">Computed by "
       "analyze [N/m]</th><th>bounded by</th><th class=\"number\">Felt [N/m]</th><th "
       "class=\"number\">Given to a hand [mJ]</th>",

@@ -43,7 +43,7 @@ Identification identification(std::string device, const IdentifyRequest& order, 
 
 std::string device_text(const Identification& identification) {
   std::string text = fmt::format(
-      "Delay from a reading to the torque computed from it: {} ms, in addition to the tick.",
+      "Delay from a reading to the torque computed from it: {} ms. The tick is not included.",
       text_of(identification.found.delay, 1e-3));
   const ReadingTimes& timing = identification.bare.timing;
   if (timing.rate > 0) {

@@ -174,9 +174,8 @@ FigurePanel stop_panel(const Session& s) {
 
 FigurePanel gain_panel(const Session& paper, const Balance& papers, const Session& ours,
                        const Balance& own, const Balance& stiff) {
-  FigurePanel panel{.title = "Energy that the stop gave minus the energy stored in the stop",
-                    .x_label = "time [s]",
-                    .y_label = "energy [μJ]"};
+  FigurePanel panel{
+      .title = "Energy that the stop created", .x_label = "time [s]", .y_label = "energy [μJ]"};
   const auto label = [](const char* law, double stop) {
     return fmt::format("{}, {} N m/rad", law, stop);
   };
@@ -249,10 +248,11 @@ Outcome switching(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "Contacts made and broken, couplings switched";
   outcome.figure.caption = fmt::format(
-      "Above: a hand of 300 N/m and 2 N s/m swings the first joint into a stop and out again at {} "
-      "Hz. The stop is flat in joint space, so there is no curvature. The energy includes the "
-      "energy that the predictive coupling's damper took. Below: the hand presses a table of 600 "
-      "N/m with {} N while Limpid switches from each coupling to each other coupling. eta = 1.",
+      "Above: a hand of 300 N/m and 2 N s/m moves the first joint into an end stop and out again, "
+      "at {} Hz. The stop is flat in joint space, so there is no curvature. The energy created is "
+      "the sum of three: the work of the stop, the energy still stored in the stop, and the energy "
+      "that the predictive coupling's damper took. Below: the hand presses a table of 600 N/m with "
+      "{} N. Meanwhile Limpid switches from each of the three couplings to the other two. eta = 1.",
       kSwinging, kSwitchingPress);
   outcome.figure.columns = 2;
   outcome.figure.panels = {stop_panel(ours), gain_panel(paper, papers, ours, own, stiff),

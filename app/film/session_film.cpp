@@ -9,7 +9,6 @@
 
 #include "app/plot/plot_frame.h"
 #include "app/plot/plot_row.h"
-#include "app/run/lane_settings.h"
 #include "app/run/provenance.h"
 #include "app/run/replay.h"
 #include "app/stage/picture_signs.h"
@@ -197,10 +196,10 @@ class Shown {
     for (; next_again_ < again.size() && again[next_again_].row <= k; ++next_again_) {
       stage_.follow(again[next_again_].parameters, runs_shown());
     }
-    if (runs_.size() == 1 || !order_.steps.empty() || !again_.rows.empty()) return;
+    if (!order_.steps.empty() || !again_.rows.empty()) return;
     std::vector<Parameters> now;
     for (const Run& run : runs_) now.push_back(run.parameters);
-    name_runs(lane_names(now), time_at(k));
+    stage_.name_runs(run_names(now));
   }
   // Names all runs in the plots, with their laws at `time` [s].
   void name_runs(std::vector<std::string> names, double time) {

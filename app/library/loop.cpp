@@ -23,7 +23,9 @@
 #include "core/dynamics/torque_limits.h"
 #include "core/tick/as_taken.h"
 #include "core/tick/force_asked.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/session/derived_columns.h"
+#include "devices/files/session/session.h"
 #include "devices/files/session/session_units.h"
 #include "devices/simulated/rig.h"
 
@@ -51,6 +53,24 @@ bool finite_number(double x) { return std::isfinite(x); }
 std::string said(const std::vector<std::string>& units) {
   const bool alike = std::ranges::all_of(units, [&](const auto& unit) { return unit == units[0]; });
   return alike ? units[0] : fmt::format("{}", fmt::join(units, ", "));
+}
+
+// Returns the shape that a column's numbers have in a row.
+std::vector<std::size_t> shape_of(ColumnWidth width, const RowLayout& layout) {
+  const auto joints = static_cast<std::size_t>(layout.dof());
+  const auto bodies = static_cast<std::size_t>(layout.bodies());
+  switch (width) {
+    case ColumnWidth::one:
+    case ColumnWidth::if_bodies: return {};
+    case ColumnWidth::three:
+    case ColumnWidth::three_if_bodies: return {3};
+    case ColumnWidth::four: return {4};
+    case ColumnWidth::dof: return {joints};
+    case ColumnWidth::contacts: return {kRowContacts, 3};
+    case ColumnWidth::poses: return {bodies, kPoseNumbers};
+    case ColumnWidth::velocities: return {bodies, kVelocityNumbers};
+  }
+  return {};
 }
 
 // Calls `work`; whatever it throws becomes the library's own error.
@@ -150,6 +170,8 @@ struct Loop::State {
     const double share = 1 / static_cast<double>(measured);
     mean_period += share * (elapsed - mean_period);
     lead = std::clamp(lead + (1 - kFaster) * plan.parameters.tick - elapsed, 0.0, 2 * kMostLead);
+    early_ticks = lead > 0 ? early_ticks + 1 : 0;
+    early_time = lead > 0 ? early_time + elapsed : 0;
   }
   std::string pace_text(double pace) const {
     return fmt::format("ticks come every {:.2g} ms, not every {:.2g} ms as `period` says",
@@ -183,8 +205,10 @@ struct Loop::State {
   Vec3 first_tip = Vec3::Zero();  // of the device before the first tick [m]
   double mean_period = 0;  // time between ticks as measured, over about kMeasured of them [s]
   std::uint64_t measured = 0;
-  double lead = 0;        // time by which the ticks are ahead of the clock [s]
-  double early_pace = 0;  // mean period when this tripped the force [s]; 0: it did not
+  double lead = 0;                // time by which the ticks are ahead of the clock [s]
+  std::uint64_t early_ticks = 0;  // those since they were not ahead of it
+  double early_time = 0;          // time that these took [s]
+  double early_pace = 0;          // their mean when they tripped the force [s]; 0: they did not
   // Positions and one more of the reading that was not one a joint; 0 once force may be back.
   std::size_t wrong_count = 0;
   const char* refused = nullptr;  // what is wrong with a reading of simulated motors
@@ -210,10 +234,12 @@ Loop::State::State(LibraryPlan read, const LoopOptions& options, LoopArm of)
     if (!layout.has(each.column)) continue;
     columns.push_back({each.path, said(units.units(each)), each.what,
                        static_cast<std::size_t>(layout.offset(each.column)),
-                       static_cast<std::size_t>(layout.width(each.column))});
+                       static_cast<std::size_t>(layout.width(each.column)),
+                       shape_of(each.width, layout)});
   }
   for (const DerivedInfo& each : kDerivedInfo) {
-    derived_columns.push_back({each.path, each.unit, each.what, 3 * derived_columns.size(), 3});
+    derived_columns.push_back(
+        {each.path, each.unit, each.what, 3 * derived_columns.size(), 3, {3}});
   }
 }
 
@@ -398,6 +424,7 @@ std::string Loop::not_passive_text() const {
 void Loop::record(const std::string& file, bool replace) {
   State& s = *state_;
   if (s.recorder) throw LoopError(file + ": " + s.recorder->out().string() + " is being recorded");
+  as_library([&] { check_ending(file, kSessionEnding); });
   std::error_code unknown;
   if (!replace && std::filesystem::exists(file, unknown)) {
     throw LoopError(file + ": exists already, and `replace` is not set");
@@ -471,7 +498,9 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   input.dt = elapsed;
   s.step(input);
   if (whole && s.rig->force_state() != ForceState::lost) s.wrong_count = 0;
-  if (early && s.early_pace == 0) s.early_pace = s.mean_period;
+  if (early && s.early_pace == 0) {
+    s.early_pace = s.early_time / static_cast<double>(s.early_ticks);
+  }
   if (reading.fault || !timed || s.rig->force_state() != ForceState::fault) s.early_pace = 0;
   return s.device->torque();
 }

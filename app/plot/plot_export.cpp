@@ -499,7 +499,7 @@ class PlotDrawing {
     int row = 0;
     for (const Curve& curve : spec_.curves) {
       if (!curve.visible) continue;
-      const std::string label = with_ellipsis(curve.label, right_ - left_ - kEntrySample);
+      const std::string label = with_ellipsis(curve.name(), right_ - left_ - kEntrySample);
       const double wide = kEntrySample + width_of(label, kLegendFont);
       if (x > left_ && x + wide > right_) {
         x = left_;

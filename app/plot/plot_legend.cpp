@@ -51,8 +51,9 @@ ImVec2 PlotLegend::lay_out(const PlotSpec& spec, float width, float scale) {
   std::string before;
   for (std::size_t i = 0; i < spec.curves.size(); ++i) {
     if (!style_.hidden_too && !spec.curves[i].visible) continue;
-    std::string label = label_of(spec.curves[i].label, before);
-    before = spec.curves[i].label;
+    const std::string name = spec.curves[i].name();
+    std::string label = label_of(name, before);
+    before = name;
     if (label.empty()) continue;
     const float entry = sample_width(scale) + text_size(Face::small, label).x;
     if (at.x > 0 && at.x + entry > width) at = {0, at.y + height};

@@ -35,10 +35,14 @@ struct Curve {
   Ink ink = Ink::neutral;
   float shade = 0;  // see ink()
   bool visible = true;
-  int law = -1;  // of now: the curve has its colour instead of its thing's
+  int law = -1;               // of now: the curve has its colour instead of its thing's
+  std::string law_name = {};  // of that law, in a plot of one run that has no band to say it
   // Channel of the law that made each value: parts of another law have that one's colour.
   int law_channel = -1;
   RunSign sign = RunSign::none;
+
+  // Name in legends.
+  std::string name() const { return law_name.empty() ? label : law_name + " " + label; }
 };
 inline Rgb colour_of(const Palette& palette, const Curve& curve) {
   const Rgb pure = curve.law < 0 ? ink(palette, curve.ink) : law_ink(palette, curve.law);

@@ -136,7 +136,7 @@ Eigen::VectorXd device_friction(const ArmDescription& arm, const Parameters& p) 
 }
 
 Eigen::VectorXd coupling_springs(const ArmDescription& arm, const Parameters& p) {
-  return p.k_vc * gain_weights(p, device_damping(arm, p));
+  return springs(p, device_damping(arm, p));
 }
 
 double device_delay(const ArmDescription& arm, const Parameters& p) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,10 +10,7 @@
 namespace limpid {
 
 std::string weak_spring_text(const ArmDescription& arm, const Parameters& p) {
-  if (std::ranges::find(info(p.kind).sliders, std::string_view("coupling.k_vc")) ==
-      info(p.kind).sliders.end()) {
-    return {};
-  }
+  if (!info(p.kind).has("coupling.k_vc")) return {};
   // Rate at which the spring brings device and proxy together [1/s]; slower than a hand moves.
   constexpr double kSlow = 2 * std::numbers::pi;
   const Eigen::MatrixXd M = arm_at(arm, rest_pose(arm)).M;

@@ -63,17 +63,23 @@ double bearable_press(const ArmDescription& arm, const TapPlace& place, const Pa
   return press;
 }
 
-RunPlan tap_plan(const ArmDescription& arm, const TapPlace& place, const WallTap& tap,
-                 const Parameters& p) {
+RunPlan wall_plan(const ArmDescription& arm, const TapPlace& place, double wall,
+                  const Parameters& p) {
   RunPlan plan;
   plan.arm = arm;
-  plan.document = parse_scene(wall_text(place, tap.wall), "scene", {}, arm);
+  plan.document = parse_scene(wall_text(place, wall), "scene", {}, arm);
   plan.parameters = p;
   plan.start = before_the_wall(arm, place);
+  plan.hand.tick = p.tick;
+  return plan;
+}
+
+RunPlan tap_plan(const ArmDescription& arm, const TapPlace& place, const WallTap& tap,
+                 const Parameters& p) {
+  RunPlan plan = wall_plan(arm, place, tap.wall, p);
   const double down = way_down(tap, p), seconds = kBefore + down / WallTap::kSpeed + tap.hold;
   plan.rows = static_cast<std::uint64_t>(std::llround(seconds / p.tick));
   plan.hand.source = fmt::format("a tap of {} N at {} m/s", tap.press, WallTap::kSpeed);
-  plan.hand.tick = p.tick;
   for (std::uint64_t k = 0; k < plan.rows; ++k) {
     const double t = static_cast<double>(k) * p.tick;
     const double way = (t - kBefore) * WallTap::kSpeed;

@@ -35,6 +35,9 @@ struct WallTap {
   static constexpr double kFast = 20;      // trembling is above this [Hz]
 };
 
+// Makes the plan of a run without a hand yet: at rest above a wall [N/m] at this place.
+RunPlan wall_plan(const ArmDescription& arm, const TapPlace& place, double wall,
+                  const Parameters& p);
 // Makes the plan of a tap. The hand's grip and all else are those of `p`.
 RunPlan tap_plan(const ArmDescription& arm, const TapPlace& place, const WallTap& tap,
                  const Parameters& p);

@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "app/run/lane_settings.h"
 #include "core/tick/arming.h"
 #include "render/theme.h"
 
@@ -213,6 +214,13 @@ std::vector<int> laws_at(const Session& session, double time) {
   return laws;
 }
 
+RunNames run_names(std::span<const Parameters> lanes) {
+  RunNames names{.beside = lanes.size() > 1};
+  if (names.beside) names.names = lane_names(lanes);
+  for (const Parameters& p : lanes) names.laws.push_back(static_cast<int>(p.kind));
+  return names;
+}
+
 std::vector<PlotChoice> default_plots() {
   return {
       {.title = "coordination error", .channels = {"coordination/error"}},
@@ -270,10 +278,14 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     curve.visible = !names.beside || !info.seldom;
     firsts.push_back(std::move(curve));
   }
-  // A curve that is its run's only one has the colour of the run's law, if that is known.
-  if (names.law(kMainLane) >= 0 && firsts.size() == 1) {
-    firsts[0].law = names.law(kMainLane);
+  // A curve that is its run's only one has the colour of the run's law, if that is known. Bands say
+  // the law of a single run over time.
+  const bool single = names.names.empty();
+  const int law = single && choice.kind != PlotKind::cross ? -1 : names.law(kMainLane);
+  if (law >= 0 && firsts.size() == 1) {
+    firsts[0].law = law;
     firsts[0].law_channel = law_channel(kMainLane, channels);
+    if (single) firsts[0].law_name = kLawKeys[static_cast<std::size_t>(law)];
   }
   spec.y = axis_for(shown, choice.kind == PlotKind::spectrum);
   if (spec.y.unit.find(',') != std::string::npos) {

@@ -1,6 +1,7 @@
 // Plots that a user has chosen, by the names of channels: the same for every arm and run.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,16 +32,19 @@ std::vector<PlotChoice> simple_plots();
 
 // Names of several runs, in front of their curves' labels.
 struct RunNames {
-  std::vector<std::string> names;  // fewer than two for a single run
-  bool beside = false;             // all run at once; else the second is a re-run of the first,
-                                   // whose several curves in a plot are named as without it
-  std::vector<int> laws = {};      // numbers of the runs' laws; -1: unknown
+  std::vector<std::string> names = {};  // fewer than two for a single run
+  bool beside = false;         // all run at once; else the second is a re-run of the first,
+                               // whose several curves in a plot are named as without it
+  std::vector<int> laws = {};  // numbers of the runs' laws; -1: unknown
 
   bool several() const { return names.size() > 1; }
   std::string name(std::size_t run) const { return run < names.size() ? names[run] : ""; }
   int law(std::size_t run) const { return run < laws.size() ? laws[run] : -1; }
   friend bool operator==(const RunNames&, const RunNames&) = default;
 };
+
+// Returns the names and laws of lanes with these settings; a single lane has no name.
+RunNames run_names(std::span<const Parameters> lanes);
 
 // Returns the laws of a session's lanes at a time of the session [s].
 std::vector<int> laws_at(const Session& session, double time);

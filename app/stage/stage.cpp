@@ -1,6 +1,7 @@
 #include "app/stage/stage.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "app/base/folders.h"
 #include "app/stage/row_view.h"
@@ -72,12 +73,19 @@ void Stage::choose_plots(const std::vector<PlotChoice>& choices) {
 
 void Stage::name_runs(const RunNames& names) {
   if (names == names_) return;
-  names_ = names;
+  const RunNames before = std::exchange(names_, names);
   // The history may know fewer runs.
   const auto known = static_cast<std::size_t>(history.channels() / channels_.count());
   names_.names.resize(std::min(names_.names.size(), known));
+  const bool same_runs =
+      names_.names.size() == before.names.size() && names_.beside == before.beside;
   for (std::size_t i = 0; i < plots.size(); ++i) {
-    plots[i].show(plot_spec(choices_[i], channels_, names_));
+    PlotSpec spec = plot_spec(choices_[i], channels_, names_);
+    const std::vector<Curve>& shown = plots[i].spec().curves;
+    for (std::size_t k = 0; same_runs && k < spec.curves.size(); ++k) {
+      spec.curves[k].visible = shown[k].visible;
+    }
+    plots[i].show(std::move(spec));
   }
 }
 

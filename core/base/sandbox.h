@@ -4,14 +4,9 @@
 
 #include <filesystem>
 
-namespace limpid {
+#include "core/base/sanitized.h"
 
-// Sanitizers take addresses and system calls of their own.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
+namespace limpid {
 
 // Restricts this process from now on. It opens files for reading only; where the kernel has
 // Landlock, only `place` and all below it (nothing, if empty). It starts no program and no thread,

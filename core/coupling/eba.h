@@ -47,10 +47,10 @@ struct EbaLaw {
     static constexpr std::array<Field<P>, 1> settings() {
       return {{{"eba.damping", "b bounded by", "Assumed damping", &P::eba_damping, "N m s/rad", 0,
                 10, 0, 0.1, false, true,
-                "Energy bounding: damping of every joint from which the law computes how much "
-                "torque the walls may have. Default: the device's own damping, as identified or as "
-                "given by its file. With a value above the true damping the hand gets energy. For "
-                "a real device Limpid uses at most the damping that is known."}}};
+                "Energy bounding: damping that the law assumes in every joint. From this damping "
+                "the law computes the largest torque of the walls. Default: the device's own "
+                "damping, identified or given by its file. If the value is above the true damping, "
+                "the hand gets energy. For a real device Limpid uses at most the known damping."}}};
     }
   };
 

@@ -1,6 +1,5 @@
 #include "core/coupling/law_at_tip.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -31,10 +30,7 @@ LawAtTip alike(LawAtTip at) {
   return at;
 }
 
-bool weighs_gains(CouplingKind kind) {
-  return std::ranges::find(info(kind).sliders, std::string_view("coupling.per_joint")) !=
-         info(kind).sliders.end();
-}
+bool weighs_gains(CouplingKind kind) { return info(kind).has("coupling.per_joint"); }
 
 }  // namespace
 

@@ -1,9 +1,11 @@
 // Texts about a coupling law for people, and its properties.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 
 namespace limpid {
 
@@ -65,6 +67,9 @@ struct LawInfo {
   bool keeps_ledger() const { return promise == Promise::ledger || promise == Promise::tanks; }
   // The law has a spring or fed-forward torques between device and proxy, and so may have a link.
   bool knows_link() const { return !solves_together && !on_device; }
+  bool has(std::string_view setting) const {
+    return std::ranges::any_of(sliders, [&](std::string_view each) { return each == setting; });
+  }
 };
 
 }  // namespace limpid

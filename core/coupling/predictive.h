@@ -52,10 +52,11 @@ struct PredictorSettings {
   static constexpr std::array<Field<P>, 5> settings() {
     return {
         {{"predictor.p", "memory p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
-          "Predictive coupling: memory of the predictor's filter; 0: no memory. Recordings of "
-          "Limpid 0.2 may have this setting. Default with exact encoders: 0.2. Default with "
-          "encoder steps: no memory; the weight of each reading is computed from the encoder step "
-          "and from the possible motion of the hand."},
+          "Predictive coupling: memory of the filter that predicts the device's motion. 0: no "
+          "memory. A larger value smooths the readings more. Default with exact encoders: 0.2. "
+          "Default with encoder steps: another filter, which computes the weight of each reading "
+          "from the encoder step and from the possible motion of the hand. Some recordings of "
+          "Limpid 0.2 set p. Limpid keeps this setting so that they can run again."},
          {"predictor.mu", "inertia \xCE\xBC", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3,
           true, true,
           "Predictive coupling: factor on the device's inertia in the predictor. Default: "
@@ -101,7 +102,7 @@ struct PredictiveLaw {
       .meaning =
           "solves device and proxy together for the coming tick and shapes inertia by passive "
           "networks: allows stiff walls, a light device and friction, and counts the energy given.",
-      .verdict = "Recommended: no drift, stiff walls, light, passive.",
+      .verdict = "Recommended: passive, without drift, with stiff walls and a light arm.",
       .promise = Promise::ledger,
       .takes_eta = true,
       .solves_together = true,

@@ -22,7 +22,7 @@ struct ProposedLaw {
       .meaning =
           "with feedforward of the observed human force and the contact force, equations "
           "(14)-(15).",
-      .verdict = "The law of the paper: no drift; passive only above \xCE\xB7_min.",
+      .verdict = "The law of the paper: without drift, but passive only above \xCE\xB7_min.",
       .promise = Promise::eta_min,
       .loop = LinearLoop::fed_forward,
       .takes_eta = true,

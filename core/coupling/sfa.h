@@ -56,8 +56,9 @@ struct SfaLaw {
                 "not move."},
                {"sfa.extended", "extended", "Start with full stiffness", &P::sfa_extended, "-", 0,
                 1, 0, 1, false, true,
-                "Augmentation: a wall pushes with its full stiffness until the hand moves back or "
-                "rests for the first time. Off: the wall is soft from the start."}}};
+                "Augmentation. On: a wall pushes with its full stiffness until the hand first "
+                "moves back or rests. After that the wall is soft, and its force grows step by "
+                "step. Off: the wall is soft from the start."}}};
     }
   };
 

@@ -50,12 +50,6 @@ double spring_energy(const Vec<N>& k_vc, const Vec<N>& x, const Vec<N>& limit) {
   return V;
 }
 
-// The spring k_vc at each joint [N m/rad].
-template <int N>
-Vec<N> springs(const SpringDamper& p, const Vec<N>& b_d) {
-  return p.k_vc * gain_weights(p, b_d);
-}
-
 // Energy given to bodies over the last tick [J].
 template <int N>
 double given_to_bodies(const Proxy<N>& proxy) {

@@ -27,8 +27,9 @@ struct SpringDamper {
               "velocity, so by condition (3) the device needs twice this damping."},
              {"coupling.b_v", "b_v", "Proxy damper b_v", &P::b_v, "N m s/rad", 0, 100, 1e-4, 1,
               true, true,
-              "Damping of the proxy, equation (2). The hand feels it through the coupling. "
-              "Condition (3) asks for at least k_vc T / 2."},
+              "Damping of the proxy, equation (2). The hand feels this damping through the "
+              "coupling. Condition (3): b_v must be at least k_vc T / 2, where k_vc is the "
+              "coupling spring and T the tick."},
              {"coupling.per_joint", "gains per joint", "Gains grow with each joint's damping",
               &P::per_joint, "-", 0, 1, 0, 1, false, true,
               "k_vc, b_vc and b_v are the gains of the joint with the least damping b_d. The other "
@@ -44,6 +45,12 @@ V gain_weights(const SpringDamper& p, const V& b_d) {
   const double least = p.per_joint ? b_d.minCoeff() : 0;
   if (!(least > 0)) return V::Ones(b_d.size());
   return b_d / least;
+}
+
+// The spring k_vc at each joint [N m/rad].
+template <class V>
+V springs(const SpringDamper& p, const V& b_d) {
+  return p.k_vc * gain_weights(p, b_d);
 }
 
 inline constexpr int kMostLinkDelay = 200, kMostLinkJitter = 50;  // [ticks]
@@ -74,8 +81,8 @@ struct LinkSettings {
           "Share of the packets between device and proxy that never arrive. A side without a new "
           "packet keeps using its last packet."},
          {"link.seed", "link seed", "link seed", &P::link_seed, "-", 0, 1e9, 0, 100, false, true,
-          "Whole number from which the random numbers for link.jitter and link.loss are "
-          "computed."}}};
+          "Seed of the random numbers for link.jitter and link.loss, a whole number. The same "
+          "seed gives the same numbers."}}};
   }
 };
 

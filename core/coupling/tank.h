@@ -29,7 +29,7 @@ struct TankLaw {
       .meaning =
           "the standard coupling with an energy tank on each side. The tanks limit the energy "
           "given, whatever happens on the link between them.",
-      .verdict = "Passive at any delay. Soft walls; as heavy as the standard coupling.",
+      .verdict = "Passive at any delay. Walls are soft. The arm is as heavy as with Standard.",
       .promise = Promise::tanks,
       .for_links = true,
       .through_link = "passive at any delay, jitter and loss",

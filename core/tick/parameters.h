@@ -37,8 +37,8 @@ struct CompensationSettings {
     return {
         {{"model.gravity", "hold the weight", "Motors hold the weight", &P::holds_weight, "-", 0, 1,
           0, 1, false, true,
-          "The motors hold the arm's own weight, as given by the arm's file and device.down. Off: "
-          "the device holds its weight without the motors, for example by counterweights."},
+          "On: the motors hold the arm's own weight, as given by the arm's file and device.down. "
+          "Off: the device holds its weight without the motors, for example by counterweights."},
          {"model.friction", "friction taken off", "Friction that motors cancel", &P::friction_share,
           "-", 0, kMostShare, 0, kMostShare, false, true,
           "Share of the joints' Coulomb friction that the motors cancel. The device stays passive "
@@ -146,12 +146,14 @@ struct DeviceSettings {
           "file."},
          {"device.gravity", "weight", "Virtual arm has weight", &P::weighs, "-", 0, 1, 0, 1, false,
           true,
-          "The virtual arm has the weight given by its file, and falls if no hand holds it. Off: "
-          "counterweights hold the arm. With model.gravity the motors hold the arm."},
+          "On: the virtual arm has the weight given by its file. The arm falls if no hand holds "
+          "it, unless model.gravity is on: then the motors hold it. Off: counterweights hold the "
+          "arm."},
          {"device.springs", "springs", "Virtual arm has springs", &P::springy, "-", 0, 1, 0, 1,
           false, true,
-          "The virtual arm has the springs given by its file; the file of an identified arm has "
-          "springs. With model.springs the motors cancel the torque of these springs."},
+          "On: the virtual arm has the springs given by its file (the file of an identified arm "
+          "has springs). If model.springs is on, the motors cancel the torque of these springs. "
+          "Off: the arm has no springs."},
          {"device.down", "down", "Down, in the base's frame", choice<P, &P::down>(kDowns), "-", 0,
           6, 0, 6, false, true,
           "Direction of gravity in the frame of the arm's base, for an arm that hangs or lies on "
@@ -183,9 +185,9 @@ struct PlantSettings {
           "without lag. Real amplifiers have 200 to 2000 Hz."},
          {"plant.resonance", "resonance", "Resonance of the transmission", &P::resonance, "Hz", 0,
           1000, 0, 300, false, true,
-          "Each motor, with its encoder, drives its joint through a spring. This setting is the "
-          "motor's resonance frequency while the joint is held. 0: a rigid transmission. A part of "
-          "the arm's inertia is counted as motor inertia."},
+          "Each motor drives its joint through a spring, and the encoder is on the motor. This "
+          "setting is the motor's resonance frequency while the joint is held. A part of the arm's "
+          "inertia is counted as motor inertia. 0: the transmission is rigid."},
          {"plant.cogging", "cogging", "Cogging torque", &P::cogging, "N m", 0, 10, 0, 0.02, false,
           true, "Amplitude of the motors' cogging torque, 60 periods per turn of the joint."},
          {"plant.friction", "unknown friction", "Friction that no law knows", &P::unknown_friction,

@@ -201,6 +201,12 @@ void check_folder(const fs::path& out) {
     fail(out, "cannot write there", errno);
 }
 
+void check_ending(const fs::path& out, std::string_view ending) {
+  if (out.extension() == ending) return;
+  throw FileError(
+      fmt::format("{}: is not allowed; allowed: a name that ends in {}", out.string(), ending));
+}
+
 void check_name(const fs::path& out) {
   if (const std::size_t size = out.filename().native().size(); size > kLongestName) {
     throw FileError(

@@ -81,6 +81,9 @@ void keep_unread(const std::filesystem::path& file);
 // The file OUT.part, in which a file that takes long to write grows until it is whole.
 std::filesystem::path part_of(const std::filesystem::path& out);
 
+// Refuses a name of another ending, ".h5", than that of what will be in the file. Errors:
+// FileError.
+void check_ending(const std::filesystem::path& out, std::string_view ending);
 // Refuses names too long for the endings put behind them. Errors: FileError.
 void check_name(const std::filesystem::path& out);
 // Refuses an `out` whose folder cannot hold a new file, before it is made. Errors: FileError.

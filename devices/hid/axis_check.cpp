@@ -50,8 +50,8 @@ const char* explain(AxisVerdict verdict) {
       return "The axis passed a limit of speed, range or energy. Bring the device near its middle, "
              "let go or hold the device lightly, and try again.";
     case AxisVerdict::stalled:
-      return "The check or the device stood still for more than 5 ms in each of several pushes. "
-             "Close other programs, and try again.";
+      return "Several pushes were interrupted, because this computer or the device did not respond "
+             "for more than 5 ms. Close other programs, and try again.";
     case AxisVerdict::given_up: return "The check was interrupted; nothing is stored.";
   }
   return "";
@@ -61,7 +61,11 @@ const char* what_to_do(AxisStage stage) {
   switch (stage) {
     case AxisStage::resting:
       return "Bring the device near its middle and let go, or hold the device lightly.";
-    case AxisStage::pushing: return "The motor pushes the axis a little. Do not resist the motion.";
+    case AxisStage::pushing:
+      return "First of two pushes: the motor pushes the axis a little. Do not resist the motion.";
+    case AxisStage::pushing_back:
+      return "Second of two pushes: the motor pushes the axis the other way. Do not resist the "
+             "motion.";
     case AxisStage::done: return "";
   }
   return "";
@@ -103,7 +107,8 @@ void AxisCheck::skip_axes_without_motor() noexcept {
 
 AxisStage AxisCheck::stage() const {
   if (done_) return AxisStage::done;
-  return is_push(phase_) ? AxisStage::pushing : AxisStage::resting;
+  if (!is_push(phase_)) return AxisStage::resting;
+  return phase_ == 1 ? AxisStage::pushing : AxisStage::pushing_back;
 }
 
 bool AxisCheck::passed() const {

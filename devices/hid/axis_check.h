@@ -40,7 +40,7 @@ enum class AxisVerdict : std::uint8_t {
   beyond_limit,   // passed a limit of speed, range or energy that is set for the device
 };
 
-enum class AxisStage : std::uint8_t { resting, pushing, done };
+enum class AxisStage : std::uint8_t { resting, pushing, pushing_back, done };
 
 const char* explain(AxisVerdict verdict);  // for people, a sentence about the axis
 const char* what_to_do(AxisStage stage);   // for people, during the check

@@ -90,7 +90,7 @@ say "tests"
 failed=0
 inside "ctest --preset release -j $(nproc) --exclude-regex ^vm_ ${*@Q}" || failed=1
 say "package"
-inside 'cd build/release; rm -f limpid_*.deb; cpack >/dev/null'
-CLEAN_ROOT_TAR=$root.tar "$source/tests/shipped/clean_root.sh" "$root"/build/release/limpid_*.deb || failed=1
+inside 'cd build/release; rm -f limpid[-_]*.deb; cpack >/dev/null'
+CLEAN_ROOT_TAR=$root.tar "$source/tests/shipped/clean_root.sh" "$root"/build/release/limpid[-_]*.deb || failed=1
 [ "$failed" = 1 ] || say "all is well"
 exit "$failed"

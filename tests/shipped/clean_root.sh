@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs a package into a Debian 12 of its own, starts it as the menu does, and removes it:
-#   tests/shipped/clean_root.sh limpid_VERSION_amd64.deb
+# Installs the program's packages into a Debian 12 of its own, starts it as the menu does, and removes them:
+#   tests/shipped/clean_root.sh limpid_VERSION_amd64.deb limpid-common_VERSION_amd64.deb
 # Into another Debian with CLEAN_ROOT_TAR, the archive of a root that has apt.
 # Needs root, mmdebstrap, Xvfb, xdotool and the network; takes some minutes.
 set -euo pipefail
-deb=$(realpath "$1")
+debs=("$@")
 place=$(mktemp -d /var/tmp/limpid-root-XXXXXX)
 root=$place/root
 screen=
@@ -38,15 +38,16 @@ quiet_apt update
 
 # All that it needs comes first, so that what is left over is its own.
 say "what it depends on and recommends"
-cp "$deb" "$root/tmp/limpid.deb"
-quiet_apt install -y /tmp/limpid.deb
+cp -- "${debs[@]}" "$root/tmp/"
+packages=("${debs[@]##*/}")
+quiet_apt install -y "${packages[@]/#//tmp/}"
 quiet_apt install -y desktop-file-utils shared-mime-info libglib2.0-bin man-db
-quiet_apt purge -y limpid
+quiet_apt purge -y limpid limpid-common
 inside groupmod -g 1500 realtime  # an ordinary group, as people with ROS have it
 files >"$place/before"
 
 say "installed"
-quiet_apt install -y /tmp/limpid.deb
+quiet_apt install -y "${packages[@]/#//tmp/}"
 inside limpid --version
 inside getent group realtime >/dev/null || fail "no group realtime"
 [ -f "$root/etc/security/limits.d/limpid.conf" ] || fail "no limits"
@@ -82,7 +83,7 @@ for file in "" /tmp/one.h5; do
 done
 
 say "removed"
-quiet_apt purge -y limpid
+quiet_apt purge -y limpid limpid-common
 rm -rf "$root/root/.config" "$root/root/.local" "$root/root/.cache"
 files >"$place/after"
 diff "$place/before" "$place/after" || fail "something is left"

@@ -212,6 +212,19 @@ class Run(WithAnArm):
                 self.assertIn("the command reads this file", result.err)
                 self.assertEqual(file.read_bytes(), before)
 
+    def test_a_file_has_the_ending_of_what_is_written_into_it(self) -> None:
+        recorded, story = self.record("--duration", "0.05"), ASSETS / "stories/first.toml"
+        for words, end in ((["run", "--duration", "0.05", "--record"], ".h5"),
+                           (["run", "--duration", "0.05", "--picture"], ".png"),
+                           (["story", story, "--record"], ".h5"),
+                           (["recover", recorded.with_name("none.h5.part"), "--out"], ".h5")):  # fmt: skip
+            for wrong in ("a.txt", "a"):
+                with self.subTest(words=words, wrong=wrong):
+                    result = limpid(*words, wrong, "--force", cwd=self.directory)
+                    self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
+                    self.assertIn(f"{wrong}: is not allowed; allowed: a name that ends in {end}", result.err)
+                    self.assertFalse((self.directory / wrong).exists())
+
     def test_a_scene_that_came_along_is_found_by_its_name(self) -> None:
         for words in (["--scene", "cup.toml"], ["--hand", "touch.csv"], ["--device", "joystick.urdf"]):
             with self.subTest(words=words):

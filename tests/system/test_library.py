@@ -97,16 +97,63 @@ for law in ("standard", "predictive", "proposed"):
     assert run.rows == len(session.time), (run.rows, len(session.time))
     for name in run:
         if name.startswith("timing/"): continue
-        theirs = session.channel(name)
-        ours = run[name].reshape(theirs.shape)
+        ours, theirs = run[name], session.channel(name)
+        assert ours.shape == theirs.shape, (name, ours.shape, theirs.shape)
         assert numpy.array_equal(ours, theirs, equal_nan=True), (law, name)
-    assert run["contact/force"].shape[1:] == (4, 3)
+    assert run["contact/force"].shape[1:] == run["contact/point"].shape[1:] == (4, 3)
+    assert numpy.allclose(session["contact/force"].sum(axis=1), session.contact_force, atol=1e-12)
+    [contact] = session.contacts
+    assert contact.point in {tuple(point) for point in session["contact/point"][:, 0]}
     few = limpid.Loop(scene="table.toml", coupling=law, eta=0.7).run(hand, channels=["/proxy/position", "hand/grip"])
     assert list(few) == ["time", "proxy/position", "hand/grip"]
     assert numpy.array_equal(few["proxy/position"], run["proxy/position"])
     assert set(session.channels) == set(run), (law, set(session.channels) ^ set(run))
 print("the same")
 """), "the same\n")
+
+    def test_python_has_the_same_shapes_in_rows_runs_and_sessions(self) -> None:
+        """Also of an arm with a single joint, and of objects that move."""
+        self.assertEqual(self.python('''
+import limpid, numpy
+arm = limpid.Arm("slide", [dict(name="slide", slides=True, axis=(1, 0, 0), lower=-0.2, upper=0.2, effort=8, damping=0.5,
+                                mass=0.1)])
+scene = limpid.Scene(gravity=(0, 0, 0))
+scene.add("body", "ball", sphere=0.01, mass=0.02, position=(0.1, 0, 0))
+hand = [(0, 0, 0, 0), (0.1, 0.01, 0, 0)]
+loop = limpid.Loop(arm=arm, scene=scene)
+row, run, session = loop.step((0.01, 0, 0)), loop.run(hand), limpid.run(arm=arm, scene=scene, hand=hand)
+assert set(row) == set(run) == set(session.channels)
+for name in run:
+    assert run[name].shape == session[name].shape, (name, run[name].shape, session[name].shape)
+    assert numpy.shape(row[name]) == run[name].shape[1:], (name, row[name])
+assert isinstance(row["time"], float) and isinstance(row["energy/objects"], float)
+assert row["device/position"].shape == row["hand/torque"].shape == (1,)
+assert row["contact/force"].shape == (4, 3) and row["objects/pose"].shape == (1, 7)
+few = loop.run(hand, channels=["contact/force", "device/position"])
+assert numpy.array_equal(few["contact/force"], run["contact/force"]) and few["device/position"].shape == (100, 1)
+device = limpid.DeviceLoop([0.0], arm=arm, motors="simulated")
+assert device.tick([0.001]).shape == device.row["device/position"].shape == (1,)
+print("alike")
+'''), "alike\n")
+
+    def test_python_refuses_to_record_into_a_file_of_another_kind(self) -> None:
+        self.assertEqual(self.python('''
+import limpid, os
+loop = limpid.Loop()
+for record in (loop.record, lambda file: limpid.run(hand=[(0, 0.19, 0, 0), (0.1, 0.19, 0, 0)], record=file)):
+    for file in ("a.csv", "a"):
+        try:
+            record(file)
+        except limpid.LimpidError as error:
+            assert file in str(error) and ".h5" in str(error), error
+        else:
+            raise AssertionError("refused nothing")
+        assert not os.path.exists(file) and not os.path.exists(file + ".part")
+loop.record("refused-before.h5")
+loop.step(loop.tip)
+assert loop.finish_recording() == 0 and len(limpid.session("refused-before.h5")) == 1
+print("refused")
+'''), "refused\n")
 
     def test_python_derives_the_tips_of_arms_that_slide(self) -> None:
         self.assertEqual(self.python('''
@@ -311,6 +358,10 @@ try:
     assert (difference.values == session["device/position"] - session["proxy/position"]).all()
     assert list(difference["joint"].values) == session.joints
     assert list(apart["axis"].values) == ["x", "y", "z"]
+    touched = session.dataset(["contact/point", "device/tip"])
+    assert touched["contact/point"].dims == ("time", "contact", "axis"), touched["contact/point"].dims
+    assert (touched["contact/point"] - touched["device/tip"]).shape == session["contact/point"].shape
+    assert list(session.frame(["contact/force"])) == [f"contact/force[{i}]" for i in range(12)]
     assert frame.attrs["units"] == {"device/position[0]": "rad", "device/position[1]": "rad",
                                     "device/position[2]": "rad", "hand/grip": session.unit("hand/grip")}
     assert (data["device/position"].sel(time=0.05, method="nearest").values == session["device/position"][50]).all()

@@ -35,6 +35,7 @@ class Run(SystemTest):
 
 class Package(Run):
     deb: Path
+    common: Path  # what the library needs as well
     root: Path
 
     @classmethod
@@ -43,19 +44,20 @@ class Package(Run):
         if "LIMPID_SANITIZE:STRING=\n" not in (BUILD / "CMakeCache.txt").read_text():
             raise unittest.SkipTest("a sanitized build is not shipped")
         tool("dpkg-shlibdeps")
-        cls.deb = cls.pack("first")
+        cls.deb, cls.common = cls.pack("first")
         cls.root = cls.directory / "root"
-        subprocess.run(["dpkg", "-x", cls.deb, cls.root], check=True)
+        for deb in (cls.deb, cls.common):
+            subprocess.run(["dpkg", "-x", deb, cls.root], check=True)
 
     @classmethod
-    def pack(cls, name: str, *more: str, umask: int = 0o022) -> Path:
+    def pack(cls, name: str, *more: str, umask: int = 0o022) -> tuple[Path, Path]:
         out = cls.directory / name
         done = subprocess.run(["cpack", "--config", BUILD / "CPackConfig.cmake", "-B", out, *more], umask=umask,
                               cwd=BUILD, capture_output=True, text=True, timeout=250)  # fmt: skip
         if done.returncode != 0:
             raise AssertionError(done.stdout + done.stderr)
-        (deb,) = out.glob("limpid_*.deb")
-        return deb
+        (deb,), (common,) = out.glob("limpid_*.deb"), out.glob("limpid-common_*.deb")
+        return deb, common
 
     def test_python_finds_its_package_and_the_program(self) -> None:
         modules = self.root / "usr/lib/python3/dist-packages"
@@ -77,7 +79,7 @@ class Package(Run):
                     self.assertTrue((page.parent / link.partition("#")[0]).exists(), f"{page}: {link}")
 
     def test_lintian_accepts_it(self) -> None:
-        said = self.must(tool("lintian"), "--allow-root", "--fail-on", "none", "--no-cfg", self.deb)
+        said = self.must(tool("lintian"), "--allow-root", "--fail-on", "none", "--no-cfg", self.deb, self.common)
         # The known warning: appstream 1.0 asks for a home page, and there is none.
         known = "W: limpid: appstream-metadata-validation-failed "
         self.assertEqual([line for line in said.splitlines() if not line.startswith(known)], [])
@@ -85,8 +87,9 @@ class Package(Run):
     def test_the_library_has_packages_of_its_own(self) -> None:
         library, dev = (next(self.deb.parent.glob(f"{name}_*.deb")) for name in ("liblimpid0.*", "liblimpid-dev"))
         version = self.must("dpkg-deb", "-f", self.deb, "Version").strip()
-        self.assertIn(f"limpid (= {version})", self.must("dpkg-deb", "-f", library, "Depends"))
-        self.assertIn(f"(= {version})", self.must("dpkg-deb", "-f", dev, "Depends"))
+        for deb in (library, dev, self.deb):
+            self.assertIn(f"limpid-common (= {version})", self.must("dpkg-deb", "-f", deb, "Depends"))
+        self.assertIn(f"{library.name.split('_')[0]} (= {version})", self.must("dpkg-deb", "-f", dev, "Depends"))
         self.assertRegex(self.must("dpkg-deb", "-c", library), r"/usr/lib/\S*liblimpid\.so\.\d+\.\d+\.\d+\n")
         listed = self.must("dpkg-deb", "-c", dev)
         for name in ("include/limpid/limpid.h", "cmake/limpid/limpidConfig.cmake", "pkgconfig/limpid.pc",
@@ -95,6 +98,39 @@ class Package(Run):
         said = self.must(tool("lintian"), "--allow-root", "--fail-on", "none", "--no-cfg", library, dev)
         self.assertEqual([line for line in said.splitlines() if line.startswith("E:")], [])
 
+    # Its scene has a model that limpid-model reads.
+    LOOP = """#include <limpid/limpid.h>
+#include <cstdio>
+int main(int, char** words) {
+  limpid::LoopOptions options;
+  options.arm = "touch.urdf";
+  options.scene = words[1];
+  limpid::SimulatedLoop loop(options);
+  loop.step({loop.tip()});
+  std::printf("%zu joints\\n", loop.joints());
+}
+"""
+
+    def test_the_library_runs_without_the_program_and_without_opengl(self) -> None:
+        library, dev = (next(self.deb.parent.glob(f"{name}_*.deb")) for name in ("liblimpid0.*", "liblimpid-dev"))
+        root = self.out("")
+        for deb in (library, dev, self.common):
+            needed = self.must("dpkg-deb", "-f", deb, "Depends")
+            self.assertNotRegex(needed, r"\blimpid \(|libgl|libegl|libglfw|libx11|libepoxy|libav")
+            self.must("dpkg", "-x", deb, root)
+        folder = self.out("")
+        folder.mkdir()
+        source, program, scene = (folder / name for name in ("loop.cpp", "loop", "scene.toml"))
+        source.write_text(self.LOOP)
+        (folder / "tetrahedron.obj").write_text(
+            "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        scene.write_text('[[mesh]]\nname = "a"\nfile = "tetrahedron.obj"\nposition = [0.5, 0, 0]\nstiffness = 500\n')
+        (shared,) = root.rglob("liblimpid.so")
+        self.must("g++", "-std=c++20", f"-I{root}/usr/include", source, "-o", program, f"-L{shared.parent}", "-llimpid")
+        environment = os.environ | {"LD_LIBRARY_PATH": str(shared.parent)}
+        self.assertEqual(self.must(program, scene, env=environment), "3 joints\n")
+        self.assertEqual({path.name for path in (root / "usr/libexec/limpid").iterdir()}, {"limpid-model", "limpid-session"})
+
     def test_its_version_is_the_programs(self) -> None:
         version = self.must("dpkg-deb", "-f", self.deb, "Version").strip()
         self.assertEqual(f"limpid {version}".split("-")[0], limpid("--version").out.strip())
@@ -102,9 +138,10 @@ class Package(Run):
     def test_the_same_tree_gives_the_same_bytes(self) -> None:
         # Packed with little compression, which saves most of the work, under a strict umask.
         again = self.pack("again", "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=none", umask=0o077)
-        for part in ("--fsys-tarfile", "--ctrl-tarfile"):
-            first, second = (subprocess.check_output(["dpkg-deb", part, deb]) for deb in (self.deb, again))
-            self.assertEqual(hashlib.sha256(first).digest(), hashlib.sha256(second).digest(), part)
+        for pair in zip((self.deb, self.common), again):
+            for part in ("--fsys-tarfile", "--ctrl-tarfile"):
+                first, second = (subprocess.check_output(["dpkg-deb", part, deb]) for deb in pair)
+                self.assertEqual(hashlib.sha256(first).digest(), hashlib.sha256(second).digest(), (pair, part))
 
     def test_the_programs_name_no_place_where_they_were_built(self) -> None:
         for program in (self.root / "usr/libexec/limpid").iterdir():

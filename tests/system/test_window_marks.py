@@ -227,6 +227,13 @@ class Exports(Recorded):
         self.wait_until("the folder", lambda: str(self.sessions()) in self.opened.read_text().split("\n"))
 
 
+    def test_the_manual_is_opened_by_the_menu_help(self) -> None:
+        self.click_on("##MainMenuBar", "Help")
+        self.click_on("##Menu_00", "Manual")
+        self.wait_for_notice("Opening the manual")
+        self.wait_until("it to be opened", lambda: self.opened.exists() and self.opened.read_text())
+        self.assertEqual(self.opened.read_text().strip(), limpid("manual", "--path").out.strip())
+
     def test_the_plot_under_the_mouse_is_offered_as_it_was_seen(self) -> None:
         self.go_on(2)
         left, top, right, bottom = self.state()["plots"][1]["area"]

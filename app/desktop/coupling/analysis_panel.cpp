@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -81,6 +82,7 @@ void AnalysisPanel::draw(const Parameters& p, const ArmDescription& arm, const S
   ImGui::TextWrapped("for %s", basis_.c_str());
   ImGui::PopStyleColor();
   draw_walls(p);
+  draw_trial(p, arm, x);
   draw_felt(p, band);
   if (info(p.kind).observes) draw_observed(p, band);
 }
@@ -124,7 +126,7 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
                       info(p.kind).label, mine.stiffness, mine.bound, tip_.every_hand)
               .c_str());
   if (tip_.scene <= 0) return;
-  const bool soft = info(p.kind).knows_link() && !info(p.kind).observes;
+  const bool soft = softens(info(p.kind));
   const bool over = !soft && tip_.scene > mine.stiffness;
   read_out("stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
            over ? fmt::format("The object is too stiff: the coupling {} renders well only up to "
@@ -134,6 +136,35 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
            soft ? "The hand feels a softer wall, because this coupling's spring lies between hand "
                   "and wall."
                 : "This coupling renders this stiffness well");
+}
+
+// Draws what came of presses on the wall named for this law, and a button that simulates them.
+void AnalysisPanel::draw_trial(const Parameters& p, const ArmDescription& arm,
+                               std::span<const double> x) {
+  using std::chrono_literals::operator""s;
+  if (coming_.valid() && coming_.wait_for(0s) == std::future_status::ready) trial_ = coming_.get();
+  if (coming_.valid()) {
+    ImGui::TextDisabled("Simulates presses on a wall, %s ...", tried_.c_str());
+    return;
+  }
+  const double named = tip_.wall(p.kind).stiffness;
+  if (!(named > 0)) return;
+  if (ImGui::Button("Try this wall")) {
+    const Eigen::VectorXd pose =
+        Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+    tried_ = info(p.kind).label;
+    coming_ = std::async(std::launch::async, [this, arm, pose, p, named] {
+      return try_wall(arm, pose, p, named, &stop_);
+    });
+  }
+  tooltip(
+      "Simulates a hand that taps the wall named for this coupling, presses it slowly and rubs "
+      "it, in three grips. The device does not move.");
+  if (trial_.named <= 0) return;
+  const std::string held = trial_.held > 0 ? fmt::format("{:.0f}", trial_.held) : "none";
+  read_out("held in simulation", fmt::format("{} of {:.0f} N/m, {}", held, trial_.named, tried_),
+           trial_.fault.empty() ? "" : "Not held: " + trial_.fault + ".",
+           "The simulated hand felt this wall as stiff as it is, and the tip did not tremble");
 }
 
 void AnalysisPanel::draw_felt(const Parameters& p, double band) const {

@@ -53,9 +53,9 @@ std::string proxy_needs(const Parameters& p, const Analysis& a) {
 
 std::string device_broken(const Parameters& p, const Analysis& a) {
   if (!a.condition3.known) {
-    return "Condition (3) of the paper: no limit is known if packets are lost (link loss). Each "
-           "side then uses the last packet that it received, however old the packet is.\nThe tank "
-           "law stays passive with lost packets.";
+    return "Condition (3) of the paper cannot be checked: no limit is known if packets are lost "
+           "(link loss). Each side then uses the last packet that it received, and this packet can "
+           "be of any age.\nThe tank law stays passive if packets are lost.";
   }
   if (a.condition3.holds || a.condition3.device_margin >= 0) return {};
   return fmt::format(
@@ -482,20 +482,21 @@ void draw_count(const char* label, double count, const char* why) {
 void draw_unsolved(const CouplingReading& now) {
   draw_count("Ticks without a solution", now.unsettled,
              "In these ticks the solver found no forces that fit both the contacts and the motors "
-             "at their limit. The proxy stood still for each such tick, which is passive. Softer "
-             "walls, fewer walls at a time, less friction or stronger motors avoid such ticks.");
+             "at their limit. Limpid held the proxy still for these ticks, which is passive. To "
+             "avoid such ticks, use softer walls, fewer walls at a time, less friction or stronger "
+             "motors.");
   draw_count("Contact points left out", now.left_out,
-             "Objects touch at more points than the loop can compute. At the points left out, the "
-             "objects do not push and may sink into each other. To avoid this error, use fewer "
-             "objects that lie on each other.");
+             "Objects touch at more points than the loop can compute. Limpid leaves some of these "
+             "points out: there the objects do not push, and they may sink into each other. To "
+             "avoid this error, use fewer objects that lie on each other.");
   draw_count("Ticks in which Limpid held objects still", now.stood_still,
-             "In these ticks the solver found no forces for a mechanism. The mechanism's bodies "
-             "stood still for each such tick, which only removes energy. Masses that differ less, "
-             "softer end stops and a shorter tick avoid such ticks.");
+             "In these ticks the solver found no forces for a mechanism (objects on joints). "
+             "Limpid held these objects still for the tick, which can only remove energy. To avoid "
+             "such ticks, use masses that differ less, softer end stops or a shorter tick.");
   draw_count("Ticks in which Limpid slowed objects", now.turned_less,
              "A mechanism moved so fast that one of its bodies would have turned by more than one "
-             "radian in a tick. The body turned by one radian and lost the rest of its energy. "
-             "Heavier bodies, softer springs and a shorter tick avoid these ticks.");
+             "radian in a tick. The body turned by one radian and lost the rest of its energy. To "
+             "avoid such ticks, use heavier bodies, softer springs or a shorter tick.");
 }
 
 // Returns a way out of a coupling that gives energy.
@@ -544,8 +545,9 @@ void draw_givers(const CouplingReading& now, const Parameters& p) {
         "for the test force that measures the grip.");
   apart(
       "Energy by motors at their limit or off", energy.by_limits(),
-      "The part of E_c from motors at their limit and from motors that are off. Such a motor gives "
-      "a different torque than the coupling asks for. This is not a fault of the coupling.");
+      "A motor that is at its limit, or off, gives a different torque than the coupling asks for. "
+      "This is the part of the energy E_c that comes from these motors. It is not a fault of the "
+      "coupling.");
 }
 
 // Draws E_c as in the plots, and its sources.
@@ -595,9 +597,7 @@ void draw_break(bool broken, const Act& act) {
 
 // Draws the inertia felt, of a law that scales it.
 void draw_eta(Parameters& p, const Analysis& a) {
-  const auto& sliders = info(p.kind).sliders;
-  if (std::ranges::find(sliders, std::string_view("coupling.eta")) == sliders.end()) return;
-  eta_slider(p, a);
+  if (info(p.kind).has("coupling.eta")) eta_slider(p, a);
 }
 
 // Draws whether the law is passive with these settings, in a word. What was measured outweighs what
@@ -634,9 +634,10 @@ void draw_apart(const CouplingReading& reading) {
            "The first plot shows |x_E|.");
   read_out("Contact force",
            fmt::format("{:.2f} N{}", reading.contact, reading.carries ? " + magnet" : ""), {},
-           "Force of the scene on the proxy. The hand feels less force while a motor is at its "
-           "limit, while the force is off, or while the law reduces the torque. The force of an "
-           "object on the magnet is not counted here, but is counted in f2 of the plots.");
+           "Force with which the scene pushes the proxy. The hand feels less force while a motor "
+           "is at its limit, while the force is off, or while the law reduces the torque. If the "
+           "magnet holds an object, this value does not include the object's force. The plots "
+           "include it in f2.");
 }
 
 void draw_show(const char* label, const char* help, const Act& act) {
@@ -661,9 +662,9 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
   draw_apart(reading);
   read_out(
       "Controller energy E_c", energy_text(reading.energy_total), own_fault(reading, p),
-      "Energy that the coupling gave since the start. E_c stays below zero while the coupling is "
-      "passive, unless a change of law or a motor that cannot give the torque adds energy. If E_c "
-      "is above zero, lines below the buttons name its sources. The second plot shows E_c.");
+      "E_c is the energy that the coupling gave since the start. A passive coupling keeps E_c "
+      "below zero. But a change of law, or a motor at its limit, can also add energy. If E_c is "
+      "above zero, lines below the buttons name its sources. The second plot shows E_c.");
   draw_passive(reading, p, now.analysis);
 }
 
@@ -684,8 +685,10 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
     draw_eta(p, now.analysis);
     draw_simple_reading(reading, p, now);
     if (!now.real) draw_break(now.broken, act);
-    draw_show("Show all", "All settings and figures: gains, passivity, energy, analysis (F8).",
-              act);
+    draw_show(
+        "Show all",
+        "Shows all settings and figures: gains, passivity, energy and analysis. F8 does the same.",
+        act);
     draw_simple_notes(reading, p);
     return;
   }
@@ -693,7 +696,10 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
   if (!now.real) draw_break(now.broken, act);
   if (has_conditions(info(p.kind))) draw_passivity(p, now.analysis, now.real);
   draw_reading(reading, p, now.analysis);
-  draw_show("Show less", "Only what a beginner needs in the first hour (F8).", act);
+  draw_show("Show less",
+            "Shows only what a beginner needs in the first hour. F8 switches between this and all "
+            "settings.",
+            act);
 }
 
 void draw_coupling_of_rerun(Parameters& p, const RecordedCoupling& recording,

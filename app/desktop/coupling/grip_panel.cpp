@@ -44,8 +44,9 @@ void draw_found(const MeasuredHand& found, const Parameters& p) {
   }
   for (const GripLine& line : grip_lines(found)) {
     read_out(line.label.c_str(), line.value, {},
-             "The bounds contain the true value in 95 of 100 measurements. For \xCE\xB7_min: its "
-             "smallest and its largest value for grips within these bounds.");
+             "Bounds with 95 % confidence: in 95 of 100 measurements the true value is between "
+             "them. The bounds of \xCE\xB7_min are its smallest and its largest value for all "
+             "grips within the other bounds.");
   }
   if (!found.hands) return;
   for (std::uint8_t i = 0; i < kLaws; ++i) {

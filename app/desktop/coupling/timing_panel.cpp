@@ -79,15 +79,16 @@ LateTicks late_ticks(bool motors) {
     return {"Ticks that began after the next tick was due",
             "Ticks skipped because the tick before began too late. With a motorised device the "
             "loop never runs skipped ticks later.",
-            "The loop skipped ticks that were due during a late tick, so that motors never get "
-            "several ticks at once. The loop continued later by the skipped time."};
+            "A tick came too late. The loop skipped ticks that were due meanwhile, so that the "
+            "motors never get several ticks at once. All later ticks come later by the skipped "
+            "time."};
   }
   return {
       "Ticks that began after the next tick was due. The loop then runs faster until it is on time "
       "again.",
       "Ticks skipped because the loop stood still for too long",
-      "After a stop of more than 20 ticks the loop continued later and did not run the missed "
-      "ticks. Simulated time is now behind the clock by the ticks skipped."};
+      "The loop stood still for more than 20 ticks. Then it went on without the missed ticks. "
+      "Simulated time is now behind real time by the skipped ticks."};
 }
 
 void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_time) {
@@ -162,7 +163,7 @@ void DeviceTiming::draw_cost(const DevicePace::Figures& pace, const ArmDescripti
            : assumed ? "not measured"
                      : milliseconds(p.delay * p.tick) + ", as set",
            {},
-           "Delay from a reading to the torque computed from it, in addition to the tick. `limpid "
+           "Delay from a reading to the torque computed from it. The tick is not included. `limpid "
            "identify` measures this delay. Without a measurement the walls below are computed "
            "without delay.");
   const TipWall& wall = now_.wall(p.kind);

@@ -170,11 +170,7 @@ void Tuning::follow_lanes() {
   if (live_.loop().device_in_place()) lanes.count = 1;
   lanes.edited = std::min(lanes.edited, lanes.count - 1);
   share_world(lanes.parameters);
-  if (lanes.count == 1) return live_.stage().name_runs({});
-  const auto running = std::span(lanes.parameters).first(lanes.count);
-  RunNames names{lane_names(running), true};
-  for (const Parameters& p : running) names.laws.push_back(static_cast<int>(p.kind));
-  live_.stage().name_runs(names);
+  live_.stage().name_runs(run_names(std::span(lanes.parameters).first(lanes.count)));
 }
 
 // Marks changes in the plots. Parameters that all lanes share are marked once.

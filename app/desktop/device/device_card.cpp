@@ -116,7 +116,7 @@ void draw_axes(DeviceController& devices, StepState state) {
                                         : "");
   if (check != nullptr) {
     const AxisStage stage = check->stage;
-    if (check->begun && draw_push_sketch(check->arm, check->axis, stage == AxisStage::pushing)) {
+    if (check->begun && draw_push_sketch(check->arm, check->axis, stage)) {
       flow(8 * ImGui::GetFontSize());
     }
     ImGui::TextWrapped("%s", what_to_do(stage));
@@ -159,7 +159,7 @@ bool draw_measured(DeviceController& devices, Parameters& p, StepState state) {
     read_out("delay", "not measured", {}, "Identify the device to measure the delay.");
   } else {
     read_out("delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
-             "Delay from a reading to the torque computed from it, in addition to the tick.");
+             "Delay from a reading to the torque computed from it. The tick is not included.");
     const Parameters with = reckoning_with(p, notes.delay);
     const std::string text =
         fmt::format("Calculate with {} tick{} of delay", with.delay, with.delay == 1 ? "" : "s");

@@ -49,19 +49,20 @@ void part_slider(const char* label, double& part, float least, float most, const
 
 std::string going_on(const IdentifyProgress& progress, const ArmDescription& arm) {
   switch (progress.stage) {
-    case ExcitationStage::approach: return "goes to the middle of its range";
+    case ExcitationStage::approach: return "it goes to the middle of its range";
     case ExcitationStage::sweep:
-      return fmt::format("{} slowly, for its friction",
+      return fmt::format("joint {} slowly, to measure its friction",
                          arm.joints[static_cast<std::size_t>(progress.joint)].name);
-    case ExcitationStage::shake: return "all joints at once, for inertia, weight and delay";
-    case ExcitationStage::fade: return "comes to rest";
+    case ExcitationStage::shake:
+      return "all joints at the same time, to measure inertia, weight and delay";
+    case ExcitationStage::fade: return "it comes to rest";
   }
   return {};
 }
 
 void draw_motion(IdentifyController& controller, const ArmDescription& arm) {
   const IdentifyProgress& progress = controller.progress();
-  ImGui::TextWrapped("The device moves by itself: %s.", going_on(progress, arm).c_str());
+  ImGui::TextWrapped("The motors move the device now: %s.", going_on(progress, arm).c_str());
   progress_bar(std::clamp(progress.time / progress.duration, 0.0, 1.0),
                ImGui::GetContentRegionAvail().x);
   muted("If you hold the device, the identification stops, too.");
@@ -72,7 +73,9 @@ void draw_load(IdentifyController& controller, double load) {
   ImGui::TextWrapped("Now fix the %.0f g to the tip, firmly and close to the tip. Then let go.",
                      1e3 * load);
   if (controller.simulated())
-    muted("The simulated device has this mass as soon as you press the button.");
+    muted(
+        "You need no real load. When you press Go on, the simulated device gets this mass at its "
+        "tip.");
   if (noted_button(kGoOn) || accepted()) controller.go_on();
   ImGui::SameLine();
   if (ImGui::Button("Stop (Esc)")) controller.stop();
@@ -132,8 +135,8 @@ bool draw_found(IdentifyController& controller) {
   ImGui::Spacing();
   if (controller.simulated()) {
     muted(
-        "This was a simulated device that differs from its file. Limpid does not keep these "
-        "values.");
+        "This was a demonstration with a simulated device. Its values differ from the arm's file. "
+        "Limpid does not keep the values found.");
   } else {
     if (ImGui::Button("Use the new values (Enter)") || accepted()) {
       controller.keep();
@@ -158,7 +161,7 @@ std::map<std::string, ImVec2> IdentifyDialog::places() {
 
 void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDescription& arm) {
   ImGui::TextWrapped(
-      "The device moves by itself, first each joint slowly, then all joints at once. From this "
+      "The motors move the device: first each joint slowly, then all joints together. From this "
       "motion Limpid computes inertia, friction, weight, springs and delay. Couplings, stability "
       "margins and compensation use these values.");
   ImGui::Spacing();
@@ -194,8 +197,8 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
   const std::string why_not = controller.why_not();
   muted(!why_not.empty() ? why_not
         : controller.simulated()
-            ? "No device is in use. As a demonstration Limpid moves a simulated device that "
-              "differs from its file."
+            ? "No device is in use. As a demonstration Limpid moves a simulated device. Its values "
+              "differ from the arm's file."
             : fmt::format("The identification takes about {:.0f} s. Clear the space around the "
                           "device, and let go of the device. Nobody may hold the device meanwhile.",
                           controller.duration(request_.plan)));

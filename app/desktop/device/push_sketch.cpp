@@ -99,7 +99,7 @@ ImVec2 push_sketch_size() {
   return {10 * em, 9 * em};
 }
 
-bool draw_push_sketch(const ArmDescription& arm, int axis, bool pushes) {
+bool draw_push_sketch(const ArmDescription& arm, int axis, AxisStage stage) {
   const auto arrow = push_arrow(arm, axis);
   if (!arrow) return false;
   const Palette& colours = current_palette();
@@ -109,7 +109,7 @@ bool draw_push_sketch(const ArmDescription& arm, int axis, bool pushes) {
   ImGui::Dummy(size);
   tooltip(
       "Shows the arm at rest. A motor with the right sign pushes the tip along the strong arrow "
-      "first, then back along the pale arrow.");
+      "first, then back along the pale arrow. During a push its arrow is coloured.");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(min, max, colour(colours.backdrop), 0.2f * em);
   draw_base_frame(list, arrow->view, min, max);
@@ -140,8 +140,9 @@ bool draw_push_sketch(const ArmDescription& arm, int axis, bool pushes) {
                      {joints.front().x + 0.3f * em, joints.front().y + 0.3f * em}, links);
   const ImVec2 tip = joints.back(), way = arrow->direction;
   const float length = kPushLength * em;
-  draw_arrow(list, tip, {-way.x, -way.y}, length, colour(colours.axis));
-  draw_arrow(list, tip, way, length, colour(pushes ? colours.accent : colours.muted));
+  const bool first = stage == AxisStage::pushing, second = stage == AxisStage::pushing_back;
+  draw_arrow(list, tip, {-way.x, -way.y}, length, colour(second ? colours.accent : colours.axis));
+  draw_arrow(list, tip, way, length, colour(first ? colours.accent : colours.muted));
   return true;
 }
 

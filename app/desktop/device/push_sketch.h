@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "app/device/axis_check_run.h"
 #include "core/dynamics/arm_description.h"
 
 namespace limpid {
@@ -25,7 +26,7 @@ std::optional<PushArrow> push_arrow(const ArmDescription& arm, int axis);
 // Returns the room that the sketch takes.
 ImVec2 push_sketch_size();
 // Draws the sketch as an item of the open window; nothing if the axis does not move the tip.
-// `pushes`: the motor pushes now. Returns whether it was drawn.
-bool draw_push_sketch(const ArmDescription& arm, int axis, bool pushes);
+// The arrow of the push that `stage` has under way stands out. Returns whether it was drawn.
+bool draw_push_sketch(const ArmDescription& arm, int axis, AxisStage stage);
 
 }  // namespace limpid

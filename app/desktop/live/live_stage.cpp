@@ -58,8 +58,8 @@ void LiveStage::open_beside(SceneDocument document, const MeshModels& models, co
                             double shown) {
   if (const int bodies = count_bodies(document.scene); bodies != loop().layout().bodies()) {
     throw std::runtime_error(
-        fmt::format("This scene has {} objects that move, but the present scene has {}. Unplug the "
-                    "device before you open this scene.",
+        fmt::format("This scene has {} objects that move, but the present scene has {}. Choose the "
+                    "virtual arm before you open this scene.",
                     bodies, loop().layout().bodies()));
   }
   auto fresh = make_stage(stage_->arm(), std::move(document), models, p, shown);
@@ -131,7 +131,8 @@ void LiveStage::let_go(std::unique_ptr<Device> device) {
 std::string LiveStage::why_lanes_are_fixed() const {
   if (recording()) return "Stop the recording before you add or end a run.";
   if (loop().device_in_place()) {
-    return "A second run needs the virtual arm: one hand cannot hold two real devices.";
+    return "Only the virtual arm can have several runs at the same time: one hand cannot hold two "
+           "real devices.";
   }
   return {};
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "app/run/lane_settings.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/story/run_story.h"
@@ -238,11 +237,8 @@ RunNames PlayedSession::names_in(const StoryStep& step) const {
 }
 
 std::optional<RunNames> PlayedSession::names_now() {
-  if (lanes_.size() == 1 || has_rerun() || !steps_.empty()) return std::nullopt;
-  const std::vector<Parameters> now = lane_settings();
-  RunNames names{lane_names(now), true};
-  for (const Parameters& p : now) names.laws.push_back(static_cast<int>(p.kind));
-  return names;
+  if (has_rerun() || !steps_.empty()) return std::nullopt;
+  return run_names(lane_settings());
 }
 
 std::vector<Parameters> PlayedSession::lane_settings() {

@@ -90,8 +90,8 @@ class PlayedSession {
   // Returns the names of all runs in a step of the story.
   RunNames names_in(const StoryStep& step) const;
 
-  // Returns the names of several runs at the player's time; nothing for a story, for a single run,
-  // or beside a re-run.
+  // Returns the names and laws of all runs at the player's time; nothing for a story, or beside a
+  // re-run.
   std::optional<RunNames> names_now();
 
   // Returns the row of the hardest contact, for the session's thumbnail.

@@ -21,11 +21,6 @@ std::string value_of(const ParameterInfo& info, const Parameters& p) {
   return text == "true" ? "on" : text == "false" ? "off" : text;
 }
 
-bool has_slider(const Parameters& p, const std::string& key) {
-  return std::ranges::any_of(info(p.kind).sliders,
-                             [&](std::string_view each) { return each == key; });
-}
-
 // Returns whether a setting has a line: the law, unusual values and, with `everything`, the grip
 // and the law's sliders do, but for a flag.
 bool told(const ParameterInfo& info, const Parameters& p, bool everything) {
@@ -33,7 +28,8 @@ bool told(const ParameterInfo& info, const Parameters& p, bool everything) {
   if (key == "coupling.kind") return true;
   if (parameter_text(p, info) != parameter_text(Parameters{}, info)) return true;
   const bool of_grip = key == "hand.stiffness" || key == "hand.damping";
-  return everything && info.kind != FieldInfo::Kind::flag && (of_grip || has_slider(p, key));
+  return everything && info.kind != FieldInfo::Kind::flag &&
+         (of_grip || limpid::info(p.kind).has(key));
 }
 
 void cell(const std::string& text, Rgb ink) {

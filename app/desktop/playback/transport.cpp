@@ -221,7 +221,9 @@ void time_controls(LiveStage& live, const Act& act) {
   }
   int& slow = live.controls().slow;
   slow = static_cast<int>(std::lround(1 / choose("##slow", 1.0 / slow, {1, 0.1, 0.01}, "x")));
-  tooltip("Speed of the simulation. In slow motion the hand's target still moves at full speed.");
+  tooltip(
+      "Speed of the simulation. Slow motion does not slow you: the mouse still moves the hand's "
+      "target at full speed.");
   ImGui::SameLine();
 }
 
@@ -233,7 +235,8 @@ void live_controls(LiveStage& live, double tick, double& plot_length, const Act&
   }
   PlotGroup& group = live.stage().group;
   if (button(group.following() ? "Freeze plots" : "Follow",
-             "Freezes the plots, or lets them follow (X).", !group.following())) {
+             "Freezes the plots, or lets them follow the running time again (X).",
+             !group.following())) {
     act("plots.freeze");
   }
   const double length = choose("##length", plot_length, {1, 2, 5, 10, 20, 30, 60}, " s");

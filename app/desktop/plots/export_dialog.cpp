@@ -54,6 +54,12 @@ fs::path offer(const ExportOrder& order, const Stage& stage, const fs::path& fol
 
 }  // namespace
 
+std::string wrong_ending(const ExportOrder& order, const fs::path& file) {
+  const std::string wanted = fmt::format(".{}", ending(order));
+  if (file.extension() == wanted) return {};
+  return fmt::format("The name of this file has to end in {}.", wanted);
+}
+
 void ExportDialog::draw_what(const Stage& stage, bool recorded) {
   if (ImGui::BeginCombo("what", kWhat[static_cast<std::size_t>(order_.what)])) {
     for (std::size_t i = 0; i < kWhat.size(); ++i) {
@@ -144,7 +150,7 @@ std::string ExportDialog::why_not() const {
   if (!fs::is_directory(fs::absolute(file).parent_path(), none)) {
     return fmt::format("There is no folder {}.", file.parent_path().string());
   }
-  return {};
+  return wrong_ending(order_, file);
 }
 
 std::optional<ExportOrder> ExportDialog::draw(bool& open, const Stage& stage, std::size_t plot,

@@ -24,6 +24,9 @@ struct ExportOrder {
   std::filesystem::path file = {};
 };
 
+// Returns why a file of this order cannot have that name, by its ending; empty if it can.
+std::string wrong_ending(const ExportOrder& order, const std::filesystem::path& file);
+
 // Factor from printed sizes to those of the layout, whose text is 9 points high.
 inline constexpr double kLayoutPerMillimetre = 96 / 25.4;  // [px/mm]
 

@@ -93,7 +93,7 @@ std::string_view edit_limits(BodyJoint& joint) {
     joint.high = limited ? room : kInfinity;
     what = "stops";
   }
-  tooltip("Limits of the joint's motion on both sides. 0 is the place at the start.");
+  tooltip("Limits of the joint's motion on both sides. 0 is the joint's position at the start.");
   if (!limited) return what;
   constexpr double kApart = 1e-4;  // least distance of the stops [m or rad]
   const double far = 100;
@@ -306,7 +306,7 @@ void draw_springs(Document& document) {
   if (ImGui::Button("Add spring", {-1, 0}) && document.may_edit()) {
     document.add_spring(new_spring(document.editor()));
   }
-  tooltip("Adds a spring from the selected object to the object's present place.");
+  tooltip("Adds a spring that pulls the selected object back to the place where it is now.");
 }
 
 }  // namespace limpid

@@ -246,7 +246,7 @@ std::string_view ObjectEditor::edit(Object& object, Plane& plane) {
     what = "place";
   }
   if (drag3("Normal x, y, z", plane.normal, 0.01, -1, 1, "%.3f",
-            "Direction out of the material.")) {
+            "The normal of the plane. It points out of the material, into free space.")) {
     what = "normal";
   }
   return what;
@@ -343,10 +343,12 @@ void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed,
   }
   const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   if (ImGui::Button("Save scene", {width, 0})) act("scene.save");
-  tooltip("Ctrl+S. A scene that came with Limpid is saved as your own scene.");
+  tooltip(
+      "Saves the scene (Ctrl+S). If the scene came with Limpid, Limpid saves a copy and does not "
+      "change the original.");
   ImGui::SameLine();
   if (ImGui::Button("Gallery...", {width, 0})) act("scene.gallery");
-  tooltip("Ctrl+G: scenes to open, with pictures.");
+  tooltip("Shows pictures of the scenes that you can open (Ctrl+G).");
   ImGui::EndDisabled();
 }
 

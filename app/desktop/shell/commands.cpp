@@ -36,7 +36,7 @@ void step_setting(Desktop& d, const char* key, int direction) {
   const LawInfo& law = limpid::info(p.kind);
   const bool of_law = std::string_view(key).starts_with("coupling.") ||
                       std::string_view(key).starts_with("observer.");
-  if (of_law && std::ranges::find(law.sliders, std::string_view(key)) == law.sliders.end()) {
+  if (of_law && !law.has(key)) {
     d.notices.say_once(fmt::format("{} is {:.3g} now. The law {} does not use this setting.",
                                    info.caption, parameter_number(p, info), law.label),
                        false);
@@ -217,7 +217,9 @@ std::string in_playback(const Desktop& d) {
 }
 
 std::string no_question(const Desktop& d) {
-  return d.document.asking() ? "" : "No dialog about unsaved changes is open.";
+  return d.document.asking() ? ""
+                             : "This command answers the question about unsaved changes. That "
+                               "question is not open now.";
 }
 
 std::string nothing_kept(const Desktop& d) {
@@ -259,13 +261,16 @@ std::string cannot(const Desktop& d) {
 
 std::string why_no_more_runs(const Desktop& d) {
   const std::string why = d.live.why_lanes_are_fixed();
-  return why.empty() && d.settings.lanes.count == kMostLanes ? "At most three runs are possible."
-                                                             : why;
+  return why.empty() && d.settings.lanes.count == kMostLanes
+             ? "At most three runs are possible at the same time. Ctrl+Shift+B ends one of them."
+             : why;
 }
 
 std::string why_no_fewer_runs(const Desktop& d) {
   const std::string why = d.live.why_lanes_are_fixed();
-  return why.empty() && d.settings.lanes.count == 1 ? "There is only one run." : why;
+  return why.empty() && d.settings.lanes.count == 1
+             ? "There is only one run, and it cannot be ended. B starts a second run."
+             : why;
 }
 
 std::string no_virtual_arm(const Desktop& d) {
@@ -620,7 +625,8 @@ const Command* find_command(std::string_view id) {
 
 std::string why_not(const Command& command, const Desktop& desktop, Asker who) {
   if (desktop.blind && who == Asker::person && !command.how.blind) {
-    return "A program hides law, settings and plots until the program has finished.";
+    return "A program that is connected to Limpid hides law, settings and plots. They come back at "
+           "the latest when that program ends.";
   }
   return command.how.why_not != nullptr ? command.how.why_not(desktop) : std::string();
 }

@@ -504,7 +504,7 @@ void World::take_up(const SceneEditor& editor) {
   const int bodies = count_bodies(editor.scene());
   if (bodies == d_.live.loop().layout().bodies()) return d_.live.touch(editor.scene());
   if (d_.live.loop().device_in_place()) {
-    d_.notices.say("Unplug the device before you add or remove objects that move.", true);
+    d_.notices.say("Choose the virtual arm before you add or remove objects that move.", true);
     return;
   }
   try {
@@ -546,7 +546,8 @@ void World::start_recording(fs::path file, bool replaces) {
   hand_scene_over(true);
   if (plan.layout().bodies() != d_.live.loop().layout().bodies()) {
     d_.notices.say(
-        "Nothing is recorded: moving objects were added or removed while a device was connected.",
+        "Limpid cannot record: objects that move were added or removed while a real device was "
+        "in use. Choose the virtual arm, then record.",
         true);
     return;
   }

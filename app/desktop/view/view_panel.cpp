@@ -122,7 +122,7 @@ std::vector<std::string> hints(const std::string& task, const std::string& pad,
                                const Settings& settings) {
   const std::pair<FirstStep, std::string> all[] = {
       {FirstStep::pull, pad.empty()
-                            ? "Drag the arm by its tip onto a surface, and further in to press."
+                            ? "Drag the tip of the arm onto a surface. To press, drag further."
                             : "Left stick of " + pad + ": your hand pulls the arm onto a surface."},
       {FirstStep::push,
        pad.empty() ? "Turn the wheel while you drag: nearer and farther."

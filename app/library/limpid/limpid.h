@@ -194,6 +194,9 @@ struct RowColumn {
   std::string what;        // a sentence for people
   std::size_t offset = 0;  // of its first number in the row
   std::size_t width = 0;   // numbers: 1, 3, one a joint, ...
+  // Shape of these numbers, the last of it running fastest: {} of a single number, {joints} also of
+  // one joint, {3} of x, y, z, {4, 3} of those of four contacts, {objects, 7}.
+  std::vector<std::size_t> shape;
 };
 
 // Energies of the coupling since the loop, or its recording, began [J]; 0 before the first tick.
@@ -250,11 +253,11 @@ class LIMPID_API Loop {
   // True once the loop was unstable: force is off, and stays off.
   bool diverged() const noexcept;
 
-  // Records every row from the coming tick on into a session, an HDF5 file (.h5). A recording that
-  // is begun while force fades in waits for the end of the fade; one that runs goes on. A thread of
-  // its own writes. With simulated motors a tick waits where the disk is slower; with real ones
-  // rows that find no room are lost, and counted. Errors: the file exists and not `replace`; it
-  // cannot be written.
+  // Records every row from the coming tick on into a session, an HDF5 file whose name ends in .h5.
+  // A recording that is begun while force fades in waits for the end of the fade; one that runs
+  // goes on. A thread of its own writes. With simulated motors a tick waits where the disk is
+  // slower; with real ones rows that find no room are lost, and counted. Errors: another ending;
+  // the file exists and not `replace`; it cannot be written.
   void record(const std::string& file, bool replace = false);
   // Ends the recording and returns the number of lost rows. Without it FILE.part is left, which
   // `limpid recover` mends. Errors: a write failed; nothing was being recorded.

@@ -34,7 +34,7 @@ Array whole_row(const Loop& loop) {
 
 py::tuple described(const RowColumn& column, std::size_t behind) {
   return py::make_tuple(column.path, column.unit, column.what, behind + column.offset,
-                        column.width);
+                        py::tuple(py::cast(column.shape)));
 }
 
 // Takes the rows of a run as one array of rows x columns, without another copy.

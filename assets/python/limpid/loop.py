@@ -22,8 +22,8 @@ from limpid.worlds import Arm, Scene
 if TYPE_CHECKING:
     import numpy
 
-# Numbers of one contact and of one object in a row.
-SHAPES = {"contact/point": (-1, 3), "contact/force": (-1, 3), "objects/pose": (-1, 7), "objects/velocity": (-1, 6)}
+# The first of a channel's numbers in a row, and their shape there: () of a single number.
+Place = Tuple[int, Tuple[int, ...]]
 
 
 class NoChannel(ArgumentError, KeyError):
@@ -54,10 +54,11 @@ class Setting(NamedTuple):
 
 
 class Channels(Mapping[str, Any]):
-    """Numbers of a row, or of the rows of a run, by the names that recordings have for them:
-    row["device/position"]."""
+    """Numbers of a row, or of the rows of a run, by the names that recordings have for them. Of a row
+    row["time"] is a float, row["device/position"] an array of a number for each joint, also of a
+    single one, and row["contact/force"] one of 4 x 3; a run, like a session, has the rows before that."""
 
-    def __init__(self, values: "numpy.ndarray", places: Mapping[str, Tuple[int, int]]) -> None:
+    def __init__(self, values: "numpy.ndarray", places: Mapping[str, Place]) -> None:
         self.values_of_all = values  # as one array: of a row all its numbers, of a run rows of them
         self._places = places
 
@@ -65,12 +66,10 @@ class Channels(Mapping[str, Any]):
         known = name.lstrip("/") if isinstance(name, str) else name
         if known not in self._places:
             raise NoChannel(no_channel(name, self._places))
-        offset, width = self._places[known]
-        if width == 1 and known not in SHAPES:
-            found = self.values_of_all[..., offset]
-            return float(found) if found.ndim == 0 else found
-        part = self.values_of_all[..., offset : offset + width]
-        return part.reshape(part.shape[:-1] + SHAPES[known]) if known in SHAPES else part
+        offset, shape = self._places[known]
+        part = self.values_of_all[..., offset : offset + math.prod(shape)]
+        part = part.reshape(part.shape[:-1] + shape)
+        return float(part) if part.ndim == 0 else part
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._places)
@@ -85,7 +84,7 @@ class Channels(Mapping[str, Any]):
 class Run(Channels):
     """The rows of a run, channel by channel: run["time"], run["device/position"]."""
 
-    def __init__(self, values: "numpy.ndarray", places: Mapping[str, Tuple[int, int]], why: str,
+    def __init__(self, values: "numpy.ndarray", places: Mapping[str, Place], why: str,
                  said: Sequence[str] = ()) -> None:  # fmt: skip
         super().__init__(values, places)
         self.why = why  # what was unstable, and when; else empty
@@ -109,8 +108,8 @@ class _AnyLoop:
 
     def _learn(self) -> None:
         columns = self._loop.columns()
-        self._places = {path.lstrip("/"): (offset, width) for path, _, _, offset, width in columns}
-        self._width = sum(width for _, _, _, _, width in columns)
+        self._places: Dict[str, Place] = {path.lstrip("/"): (offset, shape) for path, _, _, offset, shape in columns}
+        self._width = sum(math.prod(shape) for _, shape in self._places.values())
         self.units: Dict[str, str] = {path.lstrip("/"): unit for path, unit, _, _, _ in columns}
         self.about: Dict[str, str] = {path.lstrip("/"): what for path, _, what, _, _ in columns}
 
@@ -187,8 +186,8 @@ class _AnyLoop:
         return words[int(found)] if words else float(found)
 
     def record(self, file: PathLike, force: bool = False) -> None:
-        """Records every row from the next tick on into a session, in place of one that is there with
-        `force`. Called while the force of real motors fades in, it begins at the fade's end."""
+        """Records every row from the next tick on into a session, FILE.h5, in place of one that is there
+        with `force`. Called while the force of real motors fades in, it begins at the fade's end."""
         try:
             self._loop.record(path_of("record", file), force)
         except LimpidError as error:
@@ -251,9 +250,9 @@ class Loop(_AnyLoop):
             for name in dict.fromkeys(["time", *(each.lstrip("/") for each in names_of("channels", channels))]):
                 if name not in self._places:
                     raise ArgumentError(no_channel(name, self._places))
-                offset, width = self._places[name]
-                places[name] = (len(kept), width)
-                kept += range(offset, offset + width)
+                offset, shape = self._places[name]
+                places[name] = (len(kept), shape)
+                kept += range(offset, offset + math.prod(shape))
         try:
             values, _, why, said = self._loop.run(hand_array(hand), seconds, kept)
         except MemoryError as error:

@@ -24,6 +24,9 @@ MAIN, TWIN = "", "twin/"
 LANES = (MAIN, TWIN, "lane3/")
 BESIDE_ROWS = ("axis", "check", "events", "joint", "marks", "models")  # of each run
 ONE_STATE = "objects/state"  # of the first row only
+# The file has three numbers of each contact in one line; here they are x, y, z of each.
+OF_CONTACTS = ("contact/force", "contact/point")
+CONTACT_AXES = ["contact", "axis"]
 
 
 class Contact(NamedTuple):
@@ -69,6 +72,8 @@ class _Recording:
             if rows and item.ndim > 0 and item.attrs.get("unit") is not None:
                 self.units[name] = _words(item.attrs["unit"])
                 self.axes[name] = [_dimension(item.dims[i], f"{bare.replace('/', '_')}_{i}") for i in range(1, item.ndim)]
+                if bare in OF_CONTACTS and item.ndim == 2 and item.shape[1] % 3 == 0:
+                    self.axes[name] = CONTACT_AXES
                 self.about[name] = str(item.attrs.get("what", ""))
                 lengths.append(len(item))
 
@@ -78,7 +83,8 @@ class _Recording:
             self.attributes: Dict[str, Any] = dict(opened.attrs)
             opened.visititems(take)
             for axis in {axis for axes in self.axes.values() for axis in axes} & set(opened):
-                self.places[axis] = [_text(value) for value in opened[axis]]
+                if hasattr(opened[axis], "shape"):  # a group has none
+                    self.places[axis] = [_text(value) for value in opened[axis]]
             self.rows = min(lengths, default=0)
             self.lanes = {name: self._lane(opened[name] if name else opened) for name in LANES
                           if not name or name in opened}  # fmt: skip
@@ -128,20 +134,26 @@ class _Recording:
         raise LimpidError(f"{self.file}: {no_channel(name, self.units)}")
 
     def channel(self, name: str) -> "numpy.ndarray":
-        import numpy
-
         name = self.known(name)
         if name not in self._read:
             with self.opened() as opened:
-                self._read[name] = numpy.asarray(opened[name][: self.rows])
+                self._read[name] = self._rows_of(opened, name)
         return self._read[name]
+
+    def _rows_of(self, opened: Any, name: str) -> "numpy.ndarray":
+        import numpy
+
+        values = numpy.asarray(opened[name][: self.rows])
+        if self.axes[name] == CONTACT_AXES:
+            return values.reshape(len(values), values.shape[1] // 3, 3)
+        return values
 
     def keep(self) -> None:
         """All channels are in memory from now on, and the file may go."""
         with self.opened() as opened:
             for name in self.units:
                 if name not in self._read:
-                    self._read[name] = opened[name][: self.rows]
+                    self._read[name] = self._rows_of(opened, name)
 
 
 def _text(value: Any) -> str:
@@ -231,7 +243,8 @@ class Session:
         return [name[len(self._lane):] for name in names]
 
     def channel(self, name: str) -> "numpy.ndarray":
-        """Values, a row each; of several numbers a row (joints, or x y z) a matrix. Raises
+        """Values, a row each: N of a number, N x n of joints, N x 3 of x y z, N x bodies x 7 or 6 of
+        objects; `contact/force` and `contact/point` are N x 4 x 3: x y z of up to four contacts. Raises
         LimpidError for a name that there is not."""
         return self._recording.channel(self._named(name))
 
@@ -310,7 +323,7 @@ class Session:
         found = []
         for first, end in zip(touched[::2], touched[1::2]):
             hardest = first + int(numpy.argmax(size[first:end]))
-            x, y, z = (float(each) for each in points[hardest][:3])
+            x, y, z = (float(each) for each in points[hardest][0])
             found.append(Contact(float(self.time[first]), float(self.time[end - 1]) + self.tick,
                                  float(size[hardest]), (x, y, z)))  # fmt: skip
         return found
@@ -338,8 +351,8 @@ class Session:
         return frame
 
     def dataset(self, channels: Optional[Sequence[str]] = None) -> "xarray.Dataset":
-        """The channels as a dataset of xarray, over the time and the dimensions of the file (joint, axis
-        and others), so that channels of one kind can be subtracted. Units and words are attributes.
+        """The channels as a dataset of xarray, over the time and joint, axis, contact and others, so
+        that channels of one kind can be subtracted. Units and words are attributes.
         netCDF takes no / in a name: dataset.rename({name: name.replace("/", "_") for name in dataset})
         can be saved with to_netcdf(). Needs xarray (Debian: python3-xarray)."""
         try:

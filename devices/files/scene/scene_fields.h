@@ -11,8 +11,9 @@ namespace limpid {
 
 inline constexpr std::array kMaterialFields{
     Field<Material>("stiffness", "Stiffness", &Material::stiffness, scene_limits::kStiffness,
-                    "How hard the object pushes back. Double click to type, right click for the "
-                    "default value. The coupling limits how hard a surface can be felt.",
+                    "With a larger value the object pushes back harder. Double click to type, "
+                    "right click for the default value. The coupling limits how stiff a surface "
+                    "can feel.",
                     {1, 1e4, true}, {.needed = true}),
     Field<Material>("damping", "Damping", &Material::damping, scene_limits::kDamping,
                     "Damping while the surface is pressed or released; at 0 the surface returns "
@@ -41,8 +42,8 @@ inline constexpr Field<Body> kBodyMass("mass", "Mass", &Body::mass, scene_limits
                                        "Mass of the object, up to 100 kg.");
 inline constexpr std::array kBodyFields{
     Field<Body>("magnet", "a magnet picks it up", &Body::magnet, scene_limits::kShare,
-                "The magnet holds the object while the device's button, or its key, is pressed and "
-                "the tip is at the object."),
+                "The magnet at the tip can hold this object. Key H, or the device's first button, "
+                "switches the magnet on and off."),
     Field<Body>("restitution", "Bounce", &Body::restitution, scene_limits::kShare,
                 "The part of its speed that the object keeps after a collision. 0: the object does "
                 "not bounce.",
@@ -82,8 +83,8 @@ inline constexpr std::array kJointFields{
 };
 inline constexpr std::array kStopFields{
     Field<BodyJoint>("stop_stiffness", "Stops' stiffness", &BodyJoint::stop_stiffness,
-                     scene_limits::kStopsStiffness, "How hard a stop pushes back.", {},
-                     {.when = has_axis}),
+                     scene_limits::kStopsStiffness,
+                     "With a larger value an end stop pushes back harder.", {}, {.when = has_axis}),
     Field<BodyJoint>("stop_restitution", "Stops' bounce", &BodyJoint::stop_restitution,
                      scene_limits::kShare,
                      "The part of its speed that the joint keeps when it hits a stop.", {0, 1},
@@ -99,10 +100,13 @@ inline constexpr std::array kForceFields{
 // Keys of the table `detent`.
 inline constexpr std::array kDetentFields{
     Field<JointForce>("force", "Detent", &JointForce::detent_force, scene_limits::kJointForce,
-                      "The largest force of the detent's steps; 0: the joint does not click.", {},
-                      {.needed = true}),
+                      "Largest force with which a notch (detent) holds the joint. 0: the joint has "
+                      "no notches.",
+                      {}, {.needed = true}),
     Field<JointForce>("period", "Detent's period", &JointForce::detent_period,
-                      scene_limits::kPeriod, "Distance from one step of the detent to the next.",
+                      scene_limits::kPeriod,
+                      "Distance from one notch (detent) to the next; on a hinge, the angle. The "
+                      "joint clicks into each notch.",
                       {}, {.needed = true}),
 };
 

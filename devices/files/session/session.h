@@ -20,6 +20,7 @@ inline constexpr const char* kSessionFormat = "limpid-session";
 // Version 1 counts the travel of slides in units of 0.1 m, and has zeros for contacts that are not
 // there. Both versions are read.
 inline constexpr int kSessionVersion = 2;
+inline constexpr const char* kSessionEnding = ".h5";
 inline constexpr std::size_t kSettingLength = 120;
 inline constexpr const char* kEventRowPath = "/events/row";
 inline constexpr const char* kRoundingPath = "/check/rounding";
@@ -125,9 +126,9 @@ enum class Packing { no, yes };
 
 // Writes OUT.h5.part while recording (SWMR: readable live). close() replaces it by OUT.h5: the
 // same, packed if the file system has nameless files and room. Rows reach the disk at least every
-// three quarters of a second of ticks. Not for the haptic thread. Errors: FileError if OUT exists
-// and `force` is not set, the place cannot be written, or a write fails (disk full). After a failed
-// write the .part keeps everything flushed before.
+// three quarters of a second of ticks. Not for the haptic thread. Errors: FileError if the
+// name has another ending, OUT exists and `force` is not set, the place cannot be written, or a
+// write fails (disk full). After a failed write the .part keeps everything flushed before.
 class SessionWriter {
  public:
   SessionWriter(std::filesystem::path out, const SessionInfo& info, bool force,

@@ -168,6 +168,7 @@ struct SessionWriter::File {
 SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force, Packing packing)
     : file_(std::make_unique<File>()) {
   check_session_info(info, out);
+  check_ending(out, kSessionEnding);
   file_->out = std::move(out);
   file_->part = part_of(file_->out);
   file_->force = force;

@@ -489,7 +489,7 @@ TEST(FiguresOf, SwitchingShowStopsAndTurns) {
                    [&](auto k) { return 1e3 * ours.one(k, Column::device_position, 0); });
   expect_over_time(made.curve(stop, "proxy x2"), ours,
                    [&](auto k) { return 1e3 * ours.one(k, Column::proxy_position, 0); });
-  const std::string gave = "Energy that the stop gave minus the energy stored in the stop";
+  const std::string gave = "Energy that the stop created";
   const Kept paper = made.kept("stop-20-proposed");
   expect_over_time(made.curve(gave, "proposed, 20 N m/rad"), paper,
                    [&](auto k) { return 1e6 * paper.one(k, Column::contact_gain); });

@@ -4,7 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <map>
+#include <numeric>
 
 #include "app/library/limpid/limpid.h"
 #include "app/run/fitted_gains.h"
@@ -572,6 +574,9 @@ TEST(Loops, KnowTheirColumnsAndSettings) {
     EXPECT_EQ(each.offset, numbers) << each.path;
     numbers += each.width;
     EXPECT_FALSE(each.what.empty());
+    const auto product =
+        std::accumulate(each.shape.begin(), each.shape.end(), std::size_t{1}, std::multiplies<>());
+    EXPECT_EQ(product, each.width) << each.path;
   }
   EXPECT_EQ(numbers, loop.row().size());
   const auto all = setting_list();
@@ -579,6 +584,28 @@ TEST(Loops, KnowTheirColumnsAndSettings) {
   ASSERT_NE(kind, all.end());
   EXPECT_THAT(kind->words, testing::Contains("predictive"));
   EXPECT_NE(library_version(), "");
+}
+
+TEST(Loops, TellTheShapeOfEachColumn) {
+  SceneBuilder scene;
+  scene.ball("a", {0.19, 0, 0.2}, 0.01, 0.02).ball("b", {0.19, 0, 0.3}, 0.01, 0.02);
+  LoopOptions options = slide();
+  options.scene_text = scene.text();
+  const DeviceLoop loop(options, std::array{0.0});
+  std::map<std::string, std::vector<std::size_t>> shapes;
+  for (const auto* all : {&loop.columns(), &loop.derived_columns()}) {
+    for (const RowColumn& each : *all) shapes[each.path] = each.shape;
+  }
+  using Shape = std::vector<std::size_t>;
+  EXPECT_EQ(shapes.at("/time"), Shape{});
+  EXPECT_EQ(shapes.at("/energy/objects"), Shape{});
+  EXPECT_EQ(shapes.at("/device/position"), Shape{1}) << "also of a single joint";
+  EXPECT_EQ(shapes.at("/hand/pull_point"), Shape{3});
+  EXPECT_EQ(shapes.at("/device/tip"), Shape{3});
+  EXPECT_EQ(shapes.at("/device/orientation"), Shape{4});
+  EXPECT_EQ(shapes.at("/contact/force"), (Shape{4, 3}));
+  EXPECT_EQ(shapes.at("/objects/pose"), (Shape{2, 7}));
+  EXPECT_EQ(shapes.at("/objects/velocity"), (Shape{2, 6}));
 }
 
 TEST(ArmModel, IsTheArmThatItsTextSays) {

@@ -201,7 +201,8 @@ TEST(Loops, SayWhatIsNotAllowed) {
   EXPECT_THAT(refusal([&] { (void)loop.row("/device/positon"); }),
               HasSubstr("no such column; did you mean /device/position?"));
   EXPECT_THAT(refusal([&] { loop.set("model.gravity", 0.5); }), HasSubstr("allowed: 0 or 1"));
-  EXPECT_THAT(refusal([&] { loop.record(std::string(300, 'x')); }), HasSubstr("xxx"));
+  EXPECT_THAT(refusal([&] { loop.record(std::string(300, 'x') + ".h5"); }),
+              AllOf(HasSubstr("xxx"), HasSubstr("303 bytes")));
   loop.set("coupling.kind=standard");
   EXPECT_EQ(loop.get("coupling.kind"), 0);
 }
@@ -226,6 +227,17 @@ TEST(Loops, RefuseToRecordInTheWordsOfTheLibrary) {
   const std::string said = refusal([&] { loop.record(file.string()); });
   EXPECT_THAT(said, HasSubstr("limpid recover"));
   EXPECT_THAT(said, AllOf(HasSubstr("`replace` overwrites"), Not(HasSubstr("--force"))));
+}
+
+TEST(Loops, RefuseToRecordIntoAFileOfAnotherKind) {
+  const test::TempDir dir;
+  std::ofstream(dir / "there.csv") << "a table";
+  DeviceLoop loop(slide(), std::array{0.0});
+  for (const char* name : {"a.csv", "a", "a.hdf5", "there.csv"}) {
+    EXPECT_THAT(refusal([&] { loop.record((dir / name).string()); }),
+                AllOf(HasSubstr(name), HasSubstr("allowed: a name that ends in .h5")));
+  }
+  EXPECT_THAT(refusal([&] { loop.finish_recording(); }), HasSubstr("nothing is being recorded"));
 }
 
 TEST(DeviceLoop, LooksAtNoPositionsThatAreNotFresh) {
@@ -359,6 +371,11 @@ TEST(DeviceLoop, TripsWhereTicksComeFasterThanThePeriod) {
     EXPECT_EQ(paced(loop, 1e-3, 1).first, 1);
     EXPECT_EQ(loop.force_text(), "");
   }
+  DeviceLoop late(options, std::array{0.0});
+  late.arm();
+  paced(late, 1e-3, 2);
+  EXPECT_THAT(paced(late, 5e-4, 0.5).second, HasSubstr("every 0.5 ms"))
+      << "the pace of the ticks that tripped, without those before them";
   DeviceLoop slightly(options, std::array{0.0});
   slightly.arm();
   EXPECT_EQ(paced(slightly, 0.95e-3, 5).first, 1);

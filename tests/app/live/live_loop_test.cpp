@@ -17,11 +17,11 @@
 
 #include "app/run/replay.h"
 #include "app/run/scene_meshes.h"
+#include "core/base/sanitized.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/computer.h"
 #include "tests/support/fake_device.h"
 #include "tests/support/random_arm.h"
-#include "tests/support/sanitized.h"
 #include "tests/support/test_session.h"
 #include "tests/support/until.h"
 #include "tests/support/wired_device.h"
@@ -320,7 +320,7 @@ TEST(LiveLoop, MeetsNoPageFaultFromItsFirstTickOnWhateverItTouches) {
   SceneDocument leaf = test::omni_document("leaf.toml");
   build_meshes(leaf);
   LiveLoop loop({});
-  if (test::kOnlyPretendsToLock || !test::may_lock_memory()) {
+  if (kSanitized || !test::may_lock_memory()) {
     GTEST_SKIP() << "memory cannot be locked here";
   }
   ASSERT_TRUE(loop.status().realtime.memory_locked);

@@ -172,6 +172,14 @@ TEST(PlotSvg, DrawsPartsInTheColoursOfTheirLaws) {
   EXPECT_EQ(drawn(2), 0u);
 }
 
+TEST(PlotSvg, SaysALawInTheLegendAndNotInTables) {
+  PlotSpec of_tank = spec();
+  of_tank.curves[0].law_name = "tank";
+  const std::string svg = plot_svg(of_tank, two_channels(), {0, 3, {}, {{-3, 3}}});
+  EXPECT_NE(svg.find(">tank joint 1</text>"), std::string::npos);
+  EXPECT_EQ(plot_table(of_tank, two_channels(), 0, 3).columns.front(), "joint 1 [mrad]");
+}
+
 // Two plots stand below one another, each with its own title, axes and clipped curves.
 TEST(PlotSvg, OfAFigureHasAllPlotsBelowOneAnother) {
   PlotSpec other = spec();

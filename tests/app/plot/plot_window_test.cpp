@@ -59,6 +59,17 @@ TEST_F(APlot, LeavesTheEnergyOfTheRunBeforeBehindAtOnce) {
   EXPECT_EQ(plot.spec().y.unit, "mJ") << "the new run's axis, with the old run still in the window";
 }
 
+TEST_F(APlot, SaysTheLawBeforeTheNameOfItsCurve) {
+  History history({.channels = 1});
+  history.append(0, std::array{0.0});
+  PlotSpec spec = energy();
+  spec.curves[0].law_name = "tank";
+  Plot plot(spec);
+  draw(plot, history, 3);
+  const auto texts = test::drawn_texts();
+  EXPECT_EQ(std::ranges::count(texts, "tank total", &test::DrawnText::text), 1);
+}
+
 struct Found {
   std::set<int> curves;
   float lowest = 0;  // lowest end of a name

@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <set>
+#include <sstream>
 #include <vector>
 
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/support/built_in.h"
 #include "tests/support/rows.h"
+#include "tests/support/test_session.h"
 
 namespace limpid {
 namespace {
@@ -43,6 +45,34 @@ TEST_P(TraceChannelsOfJoints, AreTheQuantitiesOfTheRow) {
     EXPECT_EQ(values[static_cast<std::size_t>(Channel::joints) + static_cast<std::size_t>(j)],
               x_E[j]);
   }
+}
+
+// Under a law that uses the observer's estimate the motors' torque depends on the observer's gain.
+TEST(TraceChannels, SayWhichLawsUseTheObserversEstimate) {
+  const TraceChannels channels{RowLayout(3)};
+  const auto human_estimate = static_cast<std::size_t>(Channel::human_estimate);
+  std::set<std::string> said, used;
+  std::istringstream help(channels.infos()[human_estimate].help);
+  for (std::string word; help >> word;) said.insert(word);
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    RunPlan plan = test::plan("table.toml", "touch.csv", 1);
+    plan.parameters.kind = CouplingKind{i};
+    const test::Rows rows = test::rows_of(plan);
+    plan.parameters.alpha *= 0.5;
+    const test::Rows slower = test::rows_of(plan);
+    bool differs = false;
+    double f1 = 0, error = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const Eigen::VectorXd hand = rows.vec(k, Column::hand_torque);
+      differs = differs || rows.vec(k, Column::motor_torque) != slower.vec(k, Column::motor_torque);
+      f1 += hand.squaredNorm();
+      error += (rows.vec(k, Column::hand_torque_estimate) - hand).squaredNorm();
+    }
+    EXPECT_LT(error, 0.2 * f1) << kLawKeys[i] << ": it is an estimate under every law";
+    if (differs) used.insert(kLawKeys[i]);
+  }
+  EXPECT_FALSE(used.empty());
+  for (const char* law : kLawKeys) EXPECT_EQ(said.contains(law), used.contains(law)) << law;
 }
 
 // A unit of a slide's travel is 0.1 m, its torque of 1 N m a force of 10 N.

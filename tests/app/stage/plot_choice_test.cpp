@@ -165,6 +165,27 @@ TEST(PlotChoice, AsksWhichLawMadeTheRunsOfATwin) {
   EXPECT_EQ(torques.curves.front().law_channel, -1) << "it has its thing's colour";
 }
 
+// Bands say the law over time; a plot over another channel has none.
+TEST(PlotChoice, SaysTheLawOfASingleRunWhereNoBandDoes) {
+  const TraceChannels channels{RowLayout(3)};
+  const RunNames named{.laws = {2}};
+  for (const PlotChoice& choice : default_plots()) {
+    const PlotSpec spec = plot_spec(choice, channels, named);
+    const PlotSpec without = plot_spec(choice, channels, {});
+    ASSERT_EQ(spec.curves.size(), without.curves.size());
+    const bool cross = choice.kind == PlotKind::cross;
+    for (std::size_t i = 0; i < spec.curves.size(); ++i) {
+      const Curve& curve = spec.curves[i];
+      EXPECT_EQ(curve.label, without.curves[i].label) << "tables have no law in their heads";
+      EXPECT_EQ(curve.name(), (cross ? "predictive " : "") + curve.label);
+      const Rgb thing = colour_of(kDarkPalette, without.curves[i]);
+      EXPECT_EQ(colour_of(kDarkPalette, curve), cross ? law_ink(kDarkPalette, 2) : thing);
+      EXPECT_EQ(colour_of(kDarkPalette, curve, 0), cross ? law_ink(kDarkPalette, 0) : thing);
+      EXPECT_EQ(curve.law_channel, cross ? static_cast<int>(Channel::kind) : -1);
+    }
+  }
+}
+
 TEST(PlotChoice, DrawsARerunInItsLawsColour) {
   const TraceChannels channels{RowLayout(3)};
   RunNames names = kRerun;

@@ -26,9 +26,9 @@ LoopStatus wait_for_the_end(const HapticThread& haptics) {
 }
 
 TEST(HapticThread, RunsTheBodyTickByTickUntilStopped) {
-  HapticThread haptics;
   std::vector<TickTiming> ticks;
   std::promise<void> enough;
+  HapticThread haptics;
   haptics.start(1ms, [&](const TickTiming& timing) {
     ticks.push_back(timing);
     if (timing.tick == 50) enough.set_value();
@@ -52,8 +52,8 @@ TEST(HapticThread, RunsTheBodyTickByTickUntilStopped) {
 }
 
 TEST(HapticThread, DoesNotTickAfterStop) {
-  HapticThread haptics;
   std::atomic<int> ticks{0};
+  HapticThread haptics;
   haptics.start(100us, [&](const TickTiming&) { ++ticks; });
   while (ticks == 0) std::this_thread::yield();
   haptics.stop();
@@ -81,10 +81,10 @@ TEST(HapticThread, StopsOnAnExceptionOfNoKnownKind) {
 }
 
 TEST(HapticThread, BeginsAnewAfterAFailure) {
+  std::promise<std::int64_t> first;
   HapticThread haptics;
   haptics.start(1ms, [](const TickTiming&) { throw std::runtime_error("no"); });
   wait_for_the_end(haptics);
-  std::promise<std::int64_t> first;
   haptics.start(1ms, [&, told = false](const TickTiming& timing) mutable {
     if (!told) first.set_value(timing.tick);
     told = true;
@@ -95,9 +95,9 @@ TEST(HapticThread, BeginsAnewAfterAFailure) {
 }
 
 TEST(HapticThread, ReplacesTheBodyThatRanBefore) {
-  HapticThread haptics;
   std::atomic<int> first{0};
   std::atomic<int> second{0};
+  HapticThread haptics;
   haptics.start(100us, [&](const TickTiming&) { ++first; });
   while (first == 0) std::this_thread::yield();
   haptics.start(100us, [&](const TickTiming&) { ++second; });
@@ -109,8 +109,8 @@ TEST(HapticThread, ReplacesTheBodyThatRanBefore) {
 TEST(HapticThread, StopsWhenItIsDestroyed) {
   int ticks = 0;
   {
-    HapticThread haptics;
     std::promise<void> begun;
+    HapticThread haptics;
     haptics.start(1ms, [&](const TickTiming& timing) {
       ++ticks;
       if (timing.tick == 0) begun.set_value();
@@ -137,8 +137,8 @@ TEST(HapticThread, RefusesAPeriodThatIsNotPositive) {
 }
 
 TEST(HapticThread, ReportsTheSchedulingItReallyHas) {
-  HapticThread haptics;
   std::promise<std::pair<int, int>> scheduling;
+  HapticThread haptics;
   haptics.start(1ms, [&](const TickTiming& timing) {
     if (timing.tick > 0) return;
     int policy = 0;
@@ -185,8 +185,8 @@ TEST(YieldToHaptics, PutsTheCallingThreadAndItsChildrenBehindAllOthers) {
 }
 
 TEST(HapticThread, TellsEachTickHowManyPeriodsHavePassed) {
-  HapticThread haptics;
   std::atomic<std::int64_t> periods = 0, ticks = 0, stalls = 0;
+  HapticThread haptics;
   haptics.start(
       1ms,
       [&](const TickTiming& timing) {
@@ -209,8 +209,8 @@ TEST(HapticThread, TellsEachTickHowManyPeriodsHavePassed) {
 }
 
 TEST(HapticThread, SaysThatNothingRunsWhileItIsStuckInATick) {
-  HapticThread haptics;
   std::atomic<bool> stuck = false, go_on = false;
+  HapticThread haptics;
   haptics.start(1ms, [&](const TickTiming& timing) {
     if (timing.tick < 400) return;
     stuck = true;
@@ -225,8 +225,8 @@ TEST(HapticThread, SaysThatNothingRunsWhileItIsStuckInATick) {
 }
 
 TEST(HapticThread, CountsAnewAtEachStartAndKeepsTheCountsAfterTheEnd) {
-  HapticThread haptics;
   std::atomic<std::int64_t> ticks = 0;
+  HapticThread haptics;
   haptics.start(100us, [&](const TickTiming&) {
     if (++ticks == 10) std::this_thread::sleep_for(20ms);
   });

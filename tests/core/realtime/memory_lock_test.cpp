@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/sanitized.h"
 #include "core/realtime/realtime.h"
 #include "tests/support/computer.h"
-#include "tests/support/sanitized.h"
 
 namespace limpid {
 namespace {
@@ -76,7 +76,7 @@ int look(dl_phdr_info* object, std::size_t, void* into) {
   return 0;
 }
 
-bool may_lock() { return !test::kOnlyPretendsToLock && test::may_lock_memory(); }
+bool may_lock() { return !kSanitized && test::may_lock_memory(); }
 
 class CodeOfTicks : public testing::TestWithParam<std::string_view> {};
 

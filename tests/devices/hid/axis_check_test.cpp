@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -107,6 +108,25 @@ TEST(AxisCheck, FadesIn) {
     before = torque;
   }
   EXPECT_LE(steepest, 0.2 * 1e-3 / 0.5 + 1e-12) << "half a second to a tenth of 2 N m";
+}
+
+// The first push has a torque above zero, the second one below.
+TEST(AxisCheck, SaysWhichOfTheTwoPushesIsUnderWay) {
+  AxisCheck check(traits(2));
+  Springs springs{{0.2, -0.4}};
+  std::vector<AxisStage> pushes;
+  while (!check.done() && springs.time < 100) {
+    const AxisStage stage = check.stage();
+    const auto axis = static_cast<std::size_t>(check.axis());
+    springs.tick(check);
+    const double torque = springs.x[axis] / springs.give[axis];
+    if (torque == 0) continue;
+    EXPECT_EQ(stage, torque > 0 ? AxisStage::pushing : AxisStage::pushing_back);
+    if (pushes.empty() || pushes.back() != stage) pushes.push_back(stage);
+  }
+  using enum AxisStage;
+  EXPECT_EQ(pushes, (std::vector{pushing, pushing_back, pushing, pushing_back}));
+  EXPECT_EQ(check.stage(), done);
 }
 
 // A loop that stood still has no idea what the device did meanwhile.
@@ -260,7 +280,10 @@ TEST(AxisCheck, HasAWordForEverything) {
   for (int i = 0; i <= static_cast<int>(AxisVerdict::given_up); ++i) {
     EXPECT_GT(std::string(explain(static_cast<AxisVerdict>(i))).size(), 10u);
   }
-  EXPECT_NE(std::string(what_to_do(AxisStage::resting)), what_to_do(AxisStage::pushing));
+  using enum AxisStage;
+  const std::set<std::string> said{what_to_do(resting), what_to_do(pushing),
+                                   what_to_do(pushing_back)};
+  EXPECT_EQ(said.size(), 3u) << "each is told apart";
 }
 
 }  // namespace

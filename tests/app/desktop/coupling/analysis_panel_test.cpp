@@ -7,6 +7,7 @@
 #include "core/dynamics/arm.h"
 #include "tests/app/desktop/widgets/read_panel.h"
 #include "tests/support/built_in.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -81,6 +82,22 @@ TEST_F(AnalysisWords, MarkASceneThatIsTooStiffForTheLaw) {
   p_.kind = CouplingKind::tank;
   draw();
   EXPECT_FALSE(broken("stiffest in this scene")) << "felt through a spring, whatever it is";
+}
+
+TEST_F(AnalysisWords, SayWhatCameOfPressesOnTheWall) {
+  p_.kind = CouplingKind::predictive;
+  draw();
+  EXPECT_FALSE(find("held in simulation"));
+  const double named = wall(limits()).stiffness;
+  click("Try this wall");
+  ASSERT_TRUE(test::until([&] { return find("held in simulation").has_value(); },
+                          [&] {
+                            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                            frames(1);
+                          }));
+  EXPECT_EQ(value("held in simulation"),
+            fmt::format("{0:.0f} of {0:.0f} N/m, {1}", named, info(p_.kind).label));
+  EXPECT_FALSE(broken("held in simulation"));
 }
 
 TEST_F(AnalysisWords, SayTheLimitsOfEta) {

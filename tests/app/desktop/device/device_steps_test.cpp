@@ -58,7 +58,7 @@ TEST_F(TheDevicesCard, SaysWhatTheCheckOfItsAxesDoes) {
   EXPECT_TRUE(until(says_it)) << words(kSidePanel) << sentences("##Tooltip");
 }
 
-// The device never moves: its first axis is pushed until the check gives up.
+// The device never moves: its first axis is pushed, the first time, until the check gives up.
 TEST_F(TheDevicesCard, DrawsWhichWayTheCheckOfItsAxesPushes) {
   static constexpr DeviceKind kOmni{
       .key = "test", .name = "Test", .pushes = true, .arm = "omni.urdf"};
@@ -74,7 +74,8 @@ TEST_F(TheDevicesCard, DrawsWhichWayTheCheckOfItsAxesPushes) {
     desktop->devices.hub().take({found});  // it is in no list of real devices
     if (desktop->devices.awaits_check()) desktop->devices.start_check();
     frames(1);
-    return find("from above", kSidePanel) && find("y left", kSidePanel);
+    return find("from above", kSidePanel) && find("y left", kSidePanel) &&
+           says().find("First of two pushes") != std::string::npos;
   };
   EXPECT_TRUE(until(drawn)) << words(kSidePanel);
   EXPECT_THAT(says(), HasSubstr("checking axis 1"));

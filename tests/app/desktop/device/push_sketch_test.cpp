@@ -45,11 +45,11 @@ TEST(PushArrow, IsMissingWhereNoTipMoves) {
 
 class APushSketch : public ReadPanel {
  protected:
-  void draw(const ArmDescription& arm, int axis, bool pushes) {
-    show([this, arm, axis, pushes] {
+  void draw(const ArmDescription& arm, int axis, AxisStage stage) {
+    show([this, arm, axis, stage] {
       ImDrawList& list = *ImGui::GetWindowDrawList();
       const int before = list.VtxBuffer.Size;
-      drawn_ = draw_push_sketch(arm, axis, pushes);
+      drawn_ = draw_push_sketch(arm, axis, stage);
       corners_.assign(list.VtxBuffer.begin() + before, list.VtxBuffer.end());
       room_ = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
       ImGui::TextUnformatted("below");
@@ -63,7 +63,7 @@ class APushSketch : public ReadPanel {
 
 TEST_F(APushSketch, TakesItsRoomAndStaysInIt) {
   for (int axis = 0; axis < 3; ++axis) {
-    draw(test::omni(), axis, true);
+    draw(test::omni(), axis, AxisStage::pushing);
     ASSERT_TRUE(drawn_);
     EXPECT_EQ(room_.width(), push_sketch_size().x);
     EXPECT_EQ(room_.height(), push_sketch_size().y);
@@ -82,11 +82,14 @@ TEST_F(APushSketch, TakesItsRoomAndStaysInIt) {
 }
 
 // The arrow is longer than wide, and its head, which is widest, is in its front half.
-TEST_F(APushSketch, HasAStrongArrowThatPointsTheWayOfTheFirstPush) {
-  for (int axis = 0; axis < 3; ++axis) {
-    SCOPED_TRACE(axis);
-    draw(test::omni(), axis, true);
-    const ImVec2 way = push_arrow(test::omni(), axis)->direction;
+TEST_F(APushSketch, HasAColouredArrowThatPointsTheWayOfThePushUnderWay) {
+  for (int i = 0; i < 6; ++i) {
+    SCOPED_TRACE(i);
+    const int axis = i / 2;
+    const bool second = i % 2 == 1;
+    draw(test::omni(), axis, second ? AxisStage::pushing_back : AxisStage::pushing);
+    ImVec2 way = push_arrow(test::omni(), axis)->direction;
+    if (second) way = {-way.x, -way.y};
     const auto along = [&](const ImVec2& at) { return at.x * way.x + at.y * way.y; };
     const auto across = [&](const ImVec2& at) { return at.x * way.y - at.y * way.x; };
     std::vector<ImVec2> arrow;
@@ -100,7 +103,7 @@ TEST_F(APushSketch, HasAStrongArrowThatPointsTheWayOfTheFirstPush) {
     for (const ImVec2& widest : {left, right}) {
       EXPECT_GT(along(widest), (along(front) + along(back)) / 2);
     }
-    draw(test::omni(), axis, false);
+    draw(test::omni(), axis, AxisStage::resting);
     for (const ImDrawVert& each : corners_) {
       EXPECT_NE(each.col, colour(current_palette().accent)) << "nothing pushes";
     }
@@ -108,9 +111,9 @@ TEST_F(APushSketch, HasAStrongArrowThatPointsTheWayOfTheFirstPush) {
 }
 
 TEST_F(APushSketch, SaysWhereItIsSeenFromAndWhichWayTheBaseLies) {
-  draw(test::omni(), 0, true);
+  draw(test::omni(), 0, AxisStage::pushing);
   for (const char* word : {"from above", "x forward", "y left"}) EXPECT_TRUE(find(word)) << word;
-  draw(test::omni(), 1, true);
+  draw(test::omni(), 1, AxisStage::pushing);
   for (const char* word : {"from the side", "x forward", "z up"}) EXPECT_TRUE(find(word)) << word;
 }
 

@@ -28,6 +28,15 @@ unsigned long number_at(const std::string& bytes, std::size_t at) {
   return number;
 }
 
+TEST(ExportOrder, IsOfAFileWhoseEndingSaysWhatIsInIt) {
+  EXPECT_EQ(wrong_ending({.format = Format::svg}, "a.svg"), "");
+  EXPECT_EQ(wrong_ending({.what = What::table, .format = Format::pdf}, "a.csv"), "");
+  EXPECT_EQ(wrong_ending({.what = What::window, .format = Format::pdf}, "a.png"), "");
+  for (const char* name : {"a.png", "a", "svg", "a.svg.txt"}) {
+    EXPECT_THAT(wrong_ending({.format = Format::svg}, name), HasSubstr(".svg")) << name;
+  }
+}
+
 class AnExport : public WholeWindow {
  protected:
   void SetUp() override {

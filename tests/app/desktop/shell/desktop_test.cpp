@@ -318,6 +318,33 @@ TEST_F(ADesktop, ShowsTheChosenPlotsLiveAndInPlayback) {
   EXPECT_EQ(desktop->dialog.name(), "");
 }
 
+TEST_F(ADesktop, NamesTheLawOfItsRunInThePlotAgainstAChannel) {
+  const auto law_name = [&] {
+    std::string name;
+    for (const Plot& plot : desktop->shown.stage().plots) {
+      if (plot.spec().kind == PlotKind::cross) name = plot.spec().curves.at(0).law_name;
+    }
+    return name;
+  };
+  const auto torques = [&]() -> std::vector<Curve>& {
+    return desktop->live.stage().plots.at(2).spec().curves;
+  };
+  EXPECT_EQ(law_name(), info(desktop->settings.parameters().kind).key);
+  ASSERT_EQ(torques().size(), 3u);
+  torques()[1].visible = false;
+  const std::string before = law_name();
+  desktop->tuning.next_law();
+  frames(3);
+  EXPECT_NE(law_name(), before);
+  EXPECT_EQ(law_name(), info(desktop->settings.parameters().kind).key);
+  EXPECT_FALSE(torques()[1].visible) << "what was hidden stays so";
+  desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  frames(1);
+  const Parameters& recorded = desktop->playback.shown()->settings();
+  EXPECT_EQ(law_name(), info(recorded.kind).key);
+}
+
 TEST_F(ADesktop, ChoosesTheViewUntilSomebodyDoes) {
   EXPECT_TRUE(desktop->shown.automatic_view());
   desktop->shown.look(Camera::View::top);

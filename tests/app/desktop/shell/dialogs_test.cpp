@@ -168,6 +168,77 @@ TEST_F(Dialog, OfAnExportWritesThePlotInTheSizeThatIsAsked) {
   EXPECT_EQ(desktop->asked.picture.extension(), ".png");
 }
 
+TEST_F(Dialog, OfAnExportRefusesWhatCannotBeAndAsksBeforeItReplacesAFile) {
+  const auto write_into = [&](const std::string& shown, const std::string& text) {
+    const std::vector<test::DrawnText> all = test::drawn_texts();
+    const auto field = std::ranges::find_if(all, [&](const test::DrawnText& each) {
+      return each.window.starts_with("Export") && each.text.ends_with(shown);
+    });
+    ASSERT_NE(field, all.end()) << words("Export");
+    click(ImVec2{field->min.x + 5, field->middle().y});
+    write_over(text);
+  };
+  const auto refuses = [&](const char* why) {
+    EXPECT_THAT(sentences("Export"), HasSubstr(why));
+    click("Export (Enter)", "Export");
+    EXPECT_EQ(desktop->dialog.name(), "export") << why;
+  };
+  const fs::path file = dir / "mine.svg";
+  std::ofstream(file) << "mine";
+  run("export.begin");
+  frames(4);
+  write_into("160 mm", "1");
+  refuses("The size is 1 x 80 mm; allowed:");
+  write_into("1 mm", "100");
+  write_into("300", "1");
+  refuses("1 dpi; allowed:");
+  click("SVG, lines", "Export");
+  click("dark, for slides", "Export");
+  click("a plot, as a picture", "Export");
+  click("all plots, as one figure");
+  EXPECT_TRUE(find("each plot", "Export"));
+  write_into("/plots-001.svg", (dir / "none/mine.svg").string());
+  refuses("There is no folder");
+  write_into("none/mine.svg", file.string());
+  EXPECT_THAT(sentences("Export"), HasSubstr("This file already exists."));
+  EXPECT_FALSE(find("Export (Enter)", "Export"));
+  click("Replace it (Enter)", "Export");
+  EXPECT_EQ(desktop->dialog.name(), "");
+  ASSERT_TRUE(until([&] { return desktop->exporter.written() == file; }));
+  std::ifstream in(file);
+  const std::string svg{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_THAT(svg, HasSubstr("width=\"100mm\""));
+  const std::size_t plots = desktop->live.stage().plots.size();
+  EXPECT_THAT(svg, HasSubstr(fmt::format("\"area{}\"", plots)));
+  const Rgb dark = palette(Theme::dark).panel;
+  EXPECT_THAT(svg, HasSubstr(fmt::format("#{:02x}{:02x}{:02x}", dark.r, dark.g, dark.b)));
+}
+
+TEST_F(Dialog, OfAnExportTakesAllTimesWhereItsBoxIsEmpty) {
+  play("table.h5");
+  Stage& stage = desktop->playback.shown()->stage();
+  const double from = stage.history.offset() + 1;
+  stage.group.select(PlotRange{from, from + 0.5, 0});
+  const auto rows = [&](bool click_box) {
+    run("export.begin");
+    frames(4);
+    if (find("a plot, as a picture", "Export")) {
+      click("a plot, as a picture", "Export");
+      click("a plot, as a table (CSV)");
+    }
+    for (const test::DrawnText& each : test::drawn_texts()) {
+      if (each.text.starts_with("only the selected time") && click_box) click(each.middle());
+    }
+    click("Export (Enter)", "Export");
+    EXPECT_TRUE(until([&] { return !desktop->exporter.written().empty(); }));
+    std::ifstream in(desktop->exporter.written());
+    run("export.forget");
+    return std::count(std::istreambuf_iterator<char>(in), {}, '\n') - 1;
+  };
+  EXPECT_NEAR(static_cast<double>(rows(false)), 0.5 / stage.history.tick(), 1.5);
+  EXPECT_GT(static_cast<double>(rows(true)), 1 / stage.history.tick());
+}
+
 TEST_F(Dialog, OfAnExportOffersAVideoOfRecordingsAlone) {
   run("export.begin");
   frames(4);
@@ -454,7 +525,7 @@ TEST_F(Dialog, OfIdentifyingTriesASimulatedDevice) {
   click("Begin (Enter)", "Identify the device");
   ASSERT_TRUE(until([&] { return desktop->identify.moving(); }));
   frames(3);
-  EXPECT_THAT(words("Identify the device"), HasSubstr("The device moves by itself: "));
+  EXPECT_THAT(words("Identify the device"), HasSubstr("The motors move the device now: "));
   EXPECT_FALSE(find("Close (Esc)", "Identify the device")) << "it has to be stopped first";
   click("Stop (Esc)", "Identify the device");
   EXPECT_TRUE(until([&] { return !desktop->identify.moving(); }));

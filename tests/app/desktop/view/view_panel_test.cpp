@@ -373,12 +373,12 @@ TEST_F(AView, TellsTheTaskAndTheNextStepUntilSomethingIsTouched) {
   open(document);
   draw();
   EXPECT_TRUE(says("Ring the bell.")) << "from the start";
-  EXPECT_TRUE(says("Drag the arm by its tip"));
+  EXPECT_TRUE(says("Drag the tip of the arm"));
   EXPECT_FALSE(says("Turn the wheel")) << "one step at a time";
   note_done(settings_, FirstStep::pull);
   draw();
   EXPECT_TRUE(says("Ring the bell."));
-  EXPECT_FALSE(says("Drag the arm by its tip"));
+  EXPECT_FALSE(says("Drag the tip of the arm"));
   EXPECT_TRUE(says("Turn the wheel"));
   layout_.in(std::span(row_), Column::contact_force)[2] = 1;
   draw();
@@ -393,7 +393,7 @@ TEST_F(AView, TellsNoHintThatTheTaskTells) {
   open(document);
   draw();
   EXPECT_TRUE(says("Drag the tip down onto the table."));
-  EXPECT_FALSE(says("Drag the arm by its tip"));
+  EXPECT_FALSE(says("Drag the tip of the arm"));
 }
 
 // A ball of triangles whose middle is not its object's place.

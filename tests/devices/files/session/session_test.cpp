@@ -235,8 +235,12 @@ TEST(Session, RefusesAPlaceThatIsTakenOrMissing) {
   EXPECT_THAT(open("killed.h5"), AllOf(HasSubstr("killed.h5.part"), HasSubstr("limpid recover")));
   EXPECT_EQ(test::file_bytes(dir / "killed.h5.part"), "precious");
   EXPECT_THAT(open("no/where.h5"), HasSubstr("no such directory"));
-  fs::create_directory(dir / "folder");
-  EXPECT_THAT(open("folder"), HasSubstr("directory"));
+  fs::create_directory(dir / "folder.h5");
+  EXPECT_THAT(open("folder.h5"), HasSubstr("directory"));
+  for (const char* name : {"table.csv", "plain", ".h5", "a.h5.part"}) {
+    EXPECT_THAT(open(name), AllOf(HasSubstr(name), HasSubstr("a name that ends in .h5")));
+    EXPECT_FALSE(fs::exists(dir / (std::string(name) + ".part").c_str())) << name;
+  }
   EXPECT_NE(refusal([] { SessionWriter("", sample_info(), false); }), "");
   EXPECT_THAT(refusal([] { SessionWriter("/proc/self/a.h5", sample_info(), false); }),
               HasSubstr("/proc/self/a.h5"));
