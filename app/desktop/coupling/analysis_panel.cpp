@@ -149,7 +149,7 @@ void AnalysisPanel::draw_trial(const Parameters& p, const ArmDescription& arm,
   }
   const double named = tip_.wall(p.kind).stiffness;
   if (!(named > 0)) return;
-  if (ImGui::Button("Try this wall")) {
+  if (ImGui::Button(fmt::format("Try a wall of {:.0f} N/m###try", named).c_str())) {
     const Eigen::VectorXd pose =
         Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
     tried_ = info(p.kind).label;
@@ -158,8 +158,9 @@ void AnalysisPanel::draw_trial(const Parameters& p, const ArmDescription& arm,
     });
   }
   tooltip(
-      "Simulates a hand that taps the wall named for this coupling, presses it slowly and rubs "
-      "it, in three grips. The device does not move.");
+      "Simulates a hand that taps this wall, presses it slowly and rubs it, in three grips. The "
+      "wall "
+      "is the stiffest that theory allows the chosen coupling here. The device does not move.");
   if (trial_.named <= 0) return;
   const std::string held = trial_.held > 0 ? fmt::format("{:.0f}", trial_.held) : "none";
   read_out("held in simulation", fmt::format("{} of {:.0f} N/m, {}", held, trial_.named, tried_),

@@ -89,7 +89,7 @@ TEST_F(AnalysisWords, SayWhatCameOfPressesOnTheWall) {
   draw();
   EXPECT_FALSE(find("held in simulation"));
   const double named = wall(limits()).stiffness;
-  click("Try this wall");
+  click(fmt::format("Try a wall of {:.0f} N/m", named));
   ASSERT_TRUE(test::until([&] { return find("held in simulation").has_value(); },
                           [&] {
                             std::this_thread::sleep_for(std::chrono::milliseconds(1));
