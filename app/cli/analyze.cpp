@@ -94,7 +94,7 @@ void print(const WallTrial& trial) {
   } else {
     fmt::print("  held in simulated presses   none   ");
   }
-  fmt::print("  {}\n", trial.fault.empty() ? "tapped, pressed slowly and rubbed in three grips"
+  fmt::print("  {}\n", trial.fault.empty() ? "tapped and pressed slowly in three grips"
                                            : "not " + trial.fault);
 }
 

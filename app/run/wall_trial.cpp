@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <optional>
 #include <vector>
 
 #include "app/run/analysis.h"
@@ -24,22 +23,20 @@ constexpr double kStillFor = 0.1;         // the hand is still [s]
 constexpr double kHold = 1;               // [s]
 constexpr double kJudged = 0.3;           // last part of each hold [s]
 constexpr double kPressing = 1;           // duration of a slow press [s]
-constexpr double kAside = 0.01;           // rubbed to each side [m]
-constexpr double kRub = 0.25;             // duration of a stroke from the middle [s]
 constexpr int kHalvings = 8;
 constexpr double kSameDirection = 0.95;  // cosine of the angle between two
 constexpr double kNoMobility = 1e-9;     // beside the largest: round-off
 
-// Across a wall, and along it where the tip can move along it.
+// A wall, and the hand that presses it.
 struct Press {
   TapPlace place;
-  std::optional<Vec3> along;
   double grip;  // [N/m]
 };
 
-// Point of the hand's path, below its start and aside; it goes straight from one to the next.
+// Point of the hand's path, below its start. The hand rests at each of them: a sudden
+// turn would shake the tip by itself.
 struct Waypoint {
-  double t, down, aside;  // [s, m, m]
+  double t, down;  // [s, m]
 };
 
 enum class Judged : std::uint8_t { trembling, all };
@@ -54,36 +51,30 @@ struct PressMotion {
   std::vector<Waypoint> points;
   std::vector<Phase> phases;
 
-  void go(double seconds, double down, double aside) {
-    points.push_back({points.empty() ? 0 : points.back().t + seconds, down, aside});
+  void go(double seconds, double down) {
+    points.push_back({points.empty() ? 0 : points.back().t + seconds, down});
   }
   double now() const { return points.back().t; }
 };
 
-PressMotion motion_to(double down, bool felt, bool rubs) {
+PressMotion motion_to(double down, bool felt) {
   PressMotion m;
   const auto hold = [&](double seconds, const char* name) {
-    m.go(seconds, down, 0);
+    m.go(seconds, down);
     m.phases.push_back({m.now() - std::min(kJudged, seconds), m.now(),
                         felt ? Judged::all : Judged::trembling, name});
   };
-  const double quick = down / WallTap::kSpeed;
-  m.go(0, 0, 0);
-  m.go(kStillFor, 0, 0);
-  m.go(quick, down, 0);
+  const double quick = 1.5 * down / WallTap::kSpeed;  // it is fastest in the middle
+  m.go(0, 0);
+  m.go(kStillFor, 0);
+  m.go(quick, down);
   hold(kHold, "tapped");
-  m.go(quick, 0, 0);
-  m.go(kStillFor, 0, 0);
+  m.go(quick, 0);
+  m.go(kStillFor, 0);
   const double began = m.now();
-  m.go(kPressing, down, 0);
+  m.go(kPressing, down);
   m.phases.push_back({began, m.now(), Judged::trembling, "pressed slowly"});
   hold(kHold, "pressed slowly");
-  if (!rubs) return m;
-  const double rubbed = m.now();
-  for (const double aside : {kAside, -kAside, 0.0}) {
-    m.go(aside < 0 ? 2 * kRub : kRub, down, aside);
-  }
-  m.phases.push_back({rubbed, m.now(), Judged::trembling, "rubbed"});
   return m;
 }
 
@@ -91,22 +82,21 @@ RunPlan press_plan(const ArmDescription& arm, const Press& press, double wall, P
                    PressMotion& motion) {
   p.hand_stiffness = press.grip;
   const double force = std::min(bearable_press(arm, press.place, p, kPushed), kDeepest * wall);
-  motion = motion_to(WallTap::kAbove + force / press.grip + force / wall, !softens(info(p.kind)),
-                     press.along.has_value());
+  motion = motion_to(WallTap::kAbove + force / press.grip + force / wall, !softens(info(p.kind)));
   RunPlan plan = wall_plan(arm, press.place, wall, p);
   plan.rows = static_cast<std::uint64_t>(std::llround(motion.now() / p.tick));
-  plan.hand.source = "a wall tapped, pressed slowly and rubbed";
-  const Vec3 in = -press.place.out, along = press.along.value_or(Vec3::Zero());
+  plan.hand.source = "a wall tapped, and pressed slowly";
+  const Vec3 in = -press.place.out;
   std::size_t leg = 0;
   for (std::uint64_t k = 0; k < plan.rows; ++k) {
     const double t = static_cast<double>(k) * p.tick;
     while (leg + 2 < motion.points.size() && t >= motion.points[leg + 1].t) ++leg;
     const Waypoint &a = motion.points[leg], &b = motion.points[leg + 1];
-    const double duration = b.t - a.t, part = std::clamp((t - a.t) / duration, 0.0, 1.0);
-    const Vec3 way = (b.down - a.down) * in + (b.aside - a.aside) * along;
+    const double duration = b.t - a.t, u = std::clamp((t - a.t) / duration, 0.0, 1.0);
+    const double way = b.down - a.down;
     plan.hand.time.push_back(t);
-    plan.hand.position.push_back(plan.start->target + a.down * in + a.aside * along + part * way);
-    plan.hand.velocity.push_back(way / duration);
+    plan.hand.position.push_back(plan.start->target + (a.down + u * u * (3 - 2 * u) * way) * in);
+    plan.hand.velocity.push_back(6 * u * (1 - u) / duration * way * in);
     plan.hand.grip.push_back(1);
   }
   return plan;
@@ -117,10 +107,10 @@ class PhaseMeter {
  public:
   explicit PhaseMeter(const Phase& phase) : phase_(phase) {}
 
-  void add(double t, const Vec3& trembling, double push, double depth) {
+  void add(double t, double trembling, double push, double depth) {
     if (t < phase_.from || t >= phase_.to) return;
     ++ticks_;
-    tremble2_ += trembling.squaredNorm();
+    tremble2_ += trembling * trembling;
     push_ += push;
     touched_ += depth > 0 ? 1 : 0;
     depth_ += std::max(0.0, depth);
@@ -156,22 +146,22 @@ std::string fault_of(const ArmDescription& description, const Press& press, doub
   const Eigen::VectorXd lever = arm_at(description, press.place.x).J.transpose() * press.place.out;
   const double step = p.encoder_step * lever.lpNorm<1>();
   std::vector<PhaseMeter> meters(motion.phases.begin(), motion.phases.end());
-  HighPass fast[] = {
-      {HeldWall::kFast, 1 / p.tick}, {HeldWall::kFast, 1 / p.tick}, {HeldWall::kFast, 1 / p.tick}};
+  HighPass fast(HeldWall::kFast, 1 / p.tick);
   Vec3 before = plan.start->target;
-  double t = 0, energy = 0;
+  double t = 0, given = 0;
   const RunEnd end = simulate(plan, {.stop = stop}, [&](std::span<const double> row, LaneChanges) {
     const auto x = layout.in(row, Column::device_position),
                f = layout.in(row, Column::contact_force);
     const Vec3 tip = arm.tip_at(
         Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())));
-    Vec3 v = (tip - before) / p.tick, force = Vec3::Zero();
+    // Along the wall joints may stick and slip by their own friction.
+    const double trembling = fast(press.place.out.dot(tip - before) / p.tick);
     before = tip;
-    for (int i = 0; i < 3; ++i) v[i] = fast[i](v[i]);
+    Vec3 force = Vec3::Zero();
     for (std::size_t i = 0; i + 2 < f.size(); i += 3) force += Vec3(f[i], f[i + 1], f[i + 2]);
     const double push = press.place.out.dot(force), depth = press.place.depth(tip);
-    for (PhaseMeter& meter : meters) meter.add(t, v, push, depth);
-    energy = std::max(energy, layout.in(row, Column::energy_total)[0]);
+    for (PhaseMeter& meter : meters) meter.add(t, trembling, push, depth);
+    given = std::max(given, layout.in(row, Column::energy_port)[0]);
     t += p.tick;
     return true;
   });
@@ -179,18 +169,10 @@ std::string fault_of(const ArmDescription& description, const Press& press, doub
   for (const PhaseMeter& meter : meters) {
     if (std::string fault = meter.fault(wall, step); !fault.empty()) return fault;
   }
-  if (info(p.kind).keeps_ledger() && energy > p.energy) {
-    return fmt::format("E_c reaches {:.3g} mJ", 1e3 * energy);
+  if (info(p.kind).keeps_ledger() && given > p.energy) {
+    return fmt::format("the hand is given {:.3g} mJ", 1e3 * given);
   }
   return {};
-}
-
-// The direction in which the tip moves most easily across `out`; none where it cannot.
-std::optional<Vec3> easily_along(const Mat3& mobility, const Vec3& out) {
-  const Mat3 flat = Mat3::Identity() - out * out.transpose();
-  const auto modes = symmetric_eigen(Eigen::MatrixXd(flat * mobility * flat));
-  if (!(modes.values[2] > kNoMobility * mobility.trace())) return std::nullopt;
-  return Vec3(modes.vectors.col(2)).normalized();
 }
 
 std::vector<Press> presses(const ArmDescription& description, const Eigen::VectorXd& x,
@@ -213,7 +195,7 @@ std::vector<Press> presses(const ArmDescription& description, const Eigen::Vecto
   std::vector<Press> all;
   for (const Vec3& out : outs) {
     place.out = out;
-    for (const double grip : grips) all.push_back({place, easily_along(mobility, out), grip});
+    for (const double grip : grips) all.push_back({place, grip});
   }
   return all;
 }

@@ -1,4 +1,4 @@
-// Trial of the wall that tip_limits() names: in simulation it is tapped, pressed slowly and rubbed.
+// Trial of the wall that tip_limits() names: in simulation it is tapped, and pressed slowly.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ namespace limpid {
 // Bounds for a wall that is held.
 struct HeldWall {
   static constexpr double kFelt = 0.05;     // felt stiffness off the set one, over that [-]
-  static constexpr double kChatter = 0.02;  // rms speed of the tip above kFast [m/s]
+  static constexpr double kChatter = 0.02;  // rms speed across the wall above kFast [m/s]
   static constexpr double kFast = 20;       // [Hz]
 };
 
@@ -30,8 +30,8 @@ bool softens(const LawInfo& law);
 // which dampers hold the tip least, and along the axes of its inertia, in hands of 300 and 3000 N/m
 // and in the one that is set. A wall is held if a hand that rests on it feels its stiffness within
 // HeldWall::kFelt and one encoder step (unless the law softens it), the tip does not tremble, and a
-// law with a ledger gives at most its energy. named: above 0; no scene has walls above 1e6 N/m, so
-// none is tried. `stop` ends the trial early; the result is then of no use.
+// law with a ledger gives the hand at most its energy. named: above 0; no scene has walls above 1e6
+// N/m, so none is tried. `stop` ends the trial early; the result is then of no use.
 WallTrial try_wall(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                    double named, const std::atomic<bool>* stop = nullptr);
 

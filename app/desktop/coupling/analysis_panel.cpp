@@ -158,7 +158,7 @@ void AnalysisPanel::draw_trial(const Parameters& p, const ArmDescription& arm,
     });
   }
   tooltip(
-      "Simulates a hand that taps this wall, presses it slowly and rubs it, in three grips. The "
+      "Simulates a hand that taps this wall and presses it slowly, in three grips. The "
       "wall "
       "is the stiffest that theory allows the chosen coupling here. The device does not move.");
   if (trial_.named <= 0) return;
