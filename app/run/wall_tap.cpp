@@ -63,6 +63,14 @@ double bearable_press(const ArmDescription& arm, const TapPlace& place, const Pa
   return press;
 }
 
+double push_out(const Vec3& out, std::span<const double> forces) {
+  double push = 0;
+  for (std::size_t i = 0; i + 2 < forces.size(); i += 3) {
+    push += out.dot(Vec3(forces[i], forces[i + 1], forces[i + 2]));
+  }
+  return push;
+}
+
 RunPlan wall_plan(const ArmDescription& arm, const TapPlace& place, double wall,
                   const Parameters& p) {
   RunPlan plan;
@@ -101,11 +109,7 @@ WallMeter::WallMeter(const ArmDescription& arm, const Object& wall, double T, st
       from_(from) {}
 
 void WallMeter::add(const RowLayout& layout, std::span<const double> row) {
-  const auto forces = layout.in(row, Column::contact_force);
-  double push = 0;
-  for (std::size_t i = 0; i + 2 < forces.size(); i += 3) {
-    push += out_.dot(Vec3(forces[i], forces[i + 1], forces[i + 2]));
-  }
+  const double push = push_out(out_, layout.in(row, Column::contact_force));
   const double trembling = fast_(push);
   if (row_++ < from_) return;
   fast2_ += trembling * trembling;

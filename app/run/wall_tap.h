@@ -24,6 +24,9 @@ TapPlace tap_place(const ArmDescription& arm, const Eigen::VectorXd& x, const Pa
 double bearable_press(const ArmDescription& arm, const TapPlace& place, const Parameters& p,
                       double wanted);
 
+// Returns how hard contacts push along the unit vector `out` [N]. forces: x, y, z of each [N].
+double push_out(const Vec3& out, std::span<const double> forces);
+
 struct WallTap {
   double wall = 600;    // [N/m]
   double press = 4;     // of the hand while it holds [N]

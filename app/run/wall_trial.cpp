@@ -10,6 +10,7 @@
 #include "app/run/analysis.h"
 #include "app/run/wall_tap.h"
 #include "core/dynamics/arm.h"
+#include "core/math/eigen.h"
 #include "core/math/high_pass.h"
 #include "devices/files/scene/scene_document.h"
 
@@ -59,22 +60,21 @@ struct PressMotion {
 
 PressMotion motion_to(double down, bool felt) {
   PressMotion m;
-  const auto hold = [&](double seconds, const char* name) {
-    m.go(seconds, down);
-    m.phases.push_back({m.now() - std::min(kJudged, seconds), m.now(),
-                        felt ? Judged::all : Judged::trembling, name});
+  const auto hold = [&](const char* name) {
+    m.go(kHold, down);
+    m.phases.push_back({m.now() - kJudged, m.now(), felt ? Judged::all : Judged::trembling, name});
   };
   const double quick = 1.5 * down / WallTap::kSpeed;  // it is fastest in the middle
   m.go(0, 0);
   m.go(kStillFor, 0);
   m.go(quick, down);
-  hold(kHold, "tapped");
+  hold("tapped");
   m.go(quick, 0);
   m.go(kStillFor, 0);
   const double began = m.now();
   m.go(kPressing, down);
   m.phases.push_back({began, m.now(), Judged::trembling, "pressed slowly"});
-  hold(kHold, "pressed slowly");
+  hold("pressed slowly");
   return m;
 }
 
@@ -146,20 +146,18 @@ std::string fault_of(const ArmDescription& description, const Press& press, doub
   const Eigen::VectorXd lever = arm_at(description, press.place.x).J.transpose() * press.place.out;
   const double step = p.encoder_step * lever.lpNorm<1>();
   std::vector<PhaseMeter> meters(motion.phases.begin(), motion.phases.end());
-  HighPass fast(HeldWall::kFast, 1 / p.tick);
+  HighPass fast(WallTap::kFast, 1 / p.tick);
   Vec3 before = plan.start->target;
   double t = 0, given = 0;
   const RunEnd end = simulate(plan, {.stop = stop}, [&](std::span<const double> row, LaneChanges) {
-    const auto x = layout.in(row, Column::device_position),
-               f = layout.in(row, Column::contact_force);
+    const auto x = layout.in(row, Column::device_position);
     const Vec3 tip = arm.tip_at(
         Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())));
     // Along the wall joints may stick and slip by their own friction.
     const double trembling = fast(press.place.out.dot(tip - before) / p.tick);
     before = tip;
-    Vec3 force = Vec3::Zero();
-    for (std::size_t i = 0; i + 2 < f.size(); i += 3) force += Vec3(f[i], f[i + 1], f[i + 2]);
-    const double push = press.place.out.dot(force), depth = press.place.depth(tip);
+    const double push = push_out(press.place.out, layout.in(row, Column::contact_force));
+    const double depth = press.place.depth(tip);
     for (PhaseMeter& meter : meters) meter.add(t, trembling, push, depth);
     given = std::max(given, layout.in(row, Column::energy_port)[0]);
     t += p.tick;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/dynamics/arm_description.h"
-#include "core/math/eigen.h"
+#include "core/math/sizes.h"
 #include "core/tick/parameters.h"
 
 namespace limpid {
@@ -13,8 +13,7 @@ namespace limpid {
 // Bounds for a wall that is held.
 struct HeldWall {
   static constexpr double kFelt = 0.05;     // felt stiffness off the set one, over that [-]
-  static constexpr double kChatter = 0.02;  // rms speed across the wall above kFast [m/s]
-  static constexpr double kFast = 20;       // [Hz]
+  static constexpr double kChatter = 0.02;  // rms speed across the wall above WallTap::kFast [m/s]
 };
 
 struct WallTrial {
