@@ -1,4 +1,4 @@
-// Files that are named by the time at which they begin.
+// Files and folders that are named by the time at which they begin.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +6,9 @@
 
 namespace limpid {
 
-// Returns "folder/name-20261130-173000.extension" with the present time; a second one within that
-// second ends with "-2".
+// Returns a path of nothing that exists: "folder/name-20261130-173000.extension"; within the same
+// second the next one ends with "-2". Without an extension it is for a folder.
 std::filesystem::path dated_file(const std::filesystem::path& folder, std::string_view name,
-                                 std::string_view extension);
+                                 std::string_view extension = {});
 
 }  // namespace limpid

@@ -95,7 +95,7 @@ void print(const WallTrial& trial) {
     fmt::print("  held in simulated presses   none   ");
   }
   fmt::print("  {}\n", trial.fault.empty() ? "tapped and pressed slowly in three grips"
-                                           : "not " + trial.fault);
+                                           : "not held: " + trial.fault);
 }
 
 void print(const TipLimits& tip, const std::optional<WallTrial>& trial, const Parameters& p,

@@ -499,7 +499,8 @@ std::string why_not(const Experiment& experiment, const ExperimentArm& on) {
                        on.description.name);
   }
   if (on.readings && *experiment.own_readings != '\0') {
-    return begin + "takes no --readings, because " + experiment.own_readings;
+    return begin + "takes no readings of an arm's file (--readings), because " +
+           experiment.own_readings;
   }
   return {};
 }

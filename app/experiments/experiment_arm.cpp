@@ -23,6 +23,18 @@ ExperimentArm built_in_arm() {
   return on;
 }
 
+ExperimentArm experiment_arm(const ArmDescription& arm, bool readings) {
+  ExperimentArm on = built_in_arm();
+  if (arm.urdf == on.description.urdf && !readings) return on;
+  on.description = arm;
+  on.name = arm.name + (readings ? " with its readings" : "");
+  on.readings = readings;
+  on.settings = readings
+                    ? with_readings_of(arm, fitted(arm, {}, arm.delay.value_or(arm.assumed_delay)))
+                    : fitted(arm);
+  return on;
+}
+
 bool moves_as_built_in(const ArmDescription& arm) {
   constexpr double kSame = 1e-6;  // [m]
   const ArmDescription built_in = read_urdf(default_device());

@@ -27,6 +27,10 @@ struct ExperimentArm {
 // The built-in arm with the paper's settings. Errors: FileError.
 ExperimentArm built_in_arm();
 
+// An arm with the settings that its file suggests; with `readings` also the encoder steps and the
+// delay of its file. The built-in arm without them is built_in_arm(). Errors: FileError.
+ExperimentArm experiment_arm(const ArmDescription& arm, bool readings);
+
 // Whether the tip of an arm moves over joints of the same names as the built-in arm's does: then
 // scenes that name joints, and hands that turn a single one, suit it.
 bool moves_as_built_in(const ArmDescription& arm);

@@ -7,6 +7,7 @@
 
 #include "app/experiments/experiment.h"
 #include "app/experiments/signals.h"
+#include "app/run/wall_trial.h"
 #include "core/coupling/walls.h"
 
 namespace limpid {
@@ -75,10 +76,10 @@ double named_wall(const ExperimentArm& on, const TapSetting& setting);
 
 // Bounds for a well rendered wall.
 struct WellRendered {
-  static constexpr double kPort = 5e-5;     // largest energy given to the human [J]
-  static constexpr double kEnergy = 5e-5;   // E_c, with exact encoders [J]
-  static constexpr double kChatter = 0.02;  // [m/s]
-  static constexpr double kFelt = 0.05;     // felt stiffness off the set one, over that [-]
+  static constexpr double kPort = 5e-5;    // largest energy given to the human [J]
+  static constexpr double kEnergy = 5e-5;  // E_c, with exact encoders [J]
+  static constexpr double kChatter = HeldWall::kChatter;
+  static constexpr double kFelt = HeldWall::kFelt;
 };
 bool well_rendered(const Touch& touch, bool exact_encoder);
 

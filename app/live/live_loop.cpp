@@ -92,8 +92,9 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
 
 void LiveLoop::note_trip() {
   const bool tripped = in_place_ && snapshot().arming == Arming::tripped;
-  if (tripped && !std::exchange(tripped_, tripped)) tripped_at_ = MonotonicTime{}.now();
-  tripped_ = tripped;
+  if (std::exchange(tripped_, tripped) || !tripped) return;
+  tripped_at_ = MonotonicTime{}.now();
+  ++trips_;
 }
 
 bool LiveLoop::toggle_force() {

@@ -169,6 +169,8 @@ class LiveLoop {
     return news;
   }
   const Snapshot& snapshot() const { return snapshots_.front(); }
+  // Number of times, since the start, that a device's force was seen to trip.
+  std::uint64_t trips() const { return trips_; }
   // Takes the ticks since the last call, as far as `into` has room; returns their number. Each tick
   // is the rows of all kMostLanes lanes, NaN where none runs.
   std::size_t drain(std::span<double> into);
@@ -243,6 +245,7 @@ class LiveLoop {
   bool virtual_armed_ = true;
   bool tripped_ = false;  // as far as the window knows
   std::optional<nanoseconds> tripped_at_;
+  std::uint64_t trips_ = 0;
   std::shared_ptr<WarmthMemory> warmth_ = std::make_shared<WarmthMemory>();  // of devices in place
 
   // Counted by the window, read by the loop.

@@ -115,6 +115,7 @@ class PhaseMeter {
     touched_ += depth > 0 ? 1 : 0;
     depth_ += std::max(0.0, depth);
   }
+  bool touched() const { return touched_ > 0; }
   // Says what was wrong with a wall of this stiffness [N/m]; empty: nothing. step: the encoders' at
   // the tip [m].
   std::string fault(double wall, double step) const {
@@ -136,9 +137,14 @@ class PhaseMeter {
   double ticks_ = 0, touched_ = 0, tremble2_ = 0, push_ = 0, depth_ = 0;
 };
 
-// Says what was wrong with a wall in one press; empty: nothing.
-std::string fault_of(const ArmDescription& description, const Press& press, double wall,
-                     const Parameters& p, const std::atomic<bool>* stop) {
+// What came of a wall in one press.
+struct Pressed {
+  bool reached = true;
+  std::string fault = {};  // empty: none
+};
+
+Pressed press_wall(const ArmDescription& description, const Press& press, double wall,
+                   const Parameters& p, const std::atomic<bool>* stop) {
   PressMotion motion;
   const RunPlan plan = press_plan(description, press, wall, p, motion);
   const Arm<kAnyDof> arm(description);
@@ -163,14 +169,14 @@ std::string fault_of(const ArmDescription& description, const Press& press, doub
     t += p.tick;
     return true;
   });
-  if (end.diverged) return "the loop becomes unstable";
+  if (end.diverged) return {.fault = "the loop becomes unstable"};
   for (const PhaseMeter& meter : meters) {
-    if (std::string fault = meter.fault(wall, step); !fault.empty()) return fault;
+    if (std::string fault = meter.fault(wall, step); !fault.empty()) return {.fault = fault};
   }
   if (info(p.kind).keeps_ledger() && given > p.energy) {
-    return fmt::format("the hand is given {:.3g} mJ", 1e3 * given);
+    return {.fault = fmt::format("the hand is given {:.3g} mJ", 1e3 * given)};
   }
-  return {};
+  return {.reached = std::ranges::any_of(meters, &PhaseMeter::touched)};
 }
 
 std::vector<Press> presses(const ArmDescription& description, const Eigen::VectorXd& x,
@@ -208,21 +214,28 @@ WallTrial try_wall(const ArmDescription& arm, const Eigen::VectorXd& x, const Pa
   const std::vector<Press> all = presses(arm, x, p);
   double wall = std::min(named, scene_limits::kStiffness.maximum);
   for (int i = 0; i <= kHalvings; ++i, wall /= 2) {
-    std::string fault;
+    Pressed pressed;
+    bool reached = false;
     for (const Press& press : all) {
       if (stop != nullptr && *stop) return trial;
       try {
-        fault = fault_of(arm, press, wall, p, stop);
+        pressed = press_wall(arm, press, wall, p, stop);
       } catch (const std::exception& e) {  // an arm or scene that cannot be run
         trial.fault = e.what();
         return trial;
       }
-      if (fault.empty()) continue;
-      trial.fault = fmt::format("{:.0f} N/m in a grip of {:.0f} N/m: {}", wall, press.grip, fault);
+      reached = reached || pressed.reached;
+      if (pressed.fault.empty()) continue;
+      trial.fault =
+          fmt::format("{:.0f} N/m in a grip of {:.0f} N/m: {}", wall, press.grip, pressed.fault);
       break;
     }
-    if (!fault.empty()) continue;
-    trial.held = wall;
+    if (!pressed.fault.empty()) continue;
+    if (reached) {
+      trial.held = wall;
+    } else {
+      trial.fault = fmt::format("no simulated hand reaches a wall of {:.0f} N/m", wall);
+    }
     break;
   }
   return trial;

@@ -29,8 +29,9 @@ bool softens(const LawInfo& law);
 // which dampers hold the tip least, and along the axes of its inertia, in hands of 300 and 3000 N/m
 // and in the one that is set. A wall is held if a hand that rests on it feels its stiffness within
 // HeldWall::kFelt and one encoder step (unless the law softens it), the tip does not tremble, and a
-// law with a ledger gives the hand at most its energy. named: above 0; no scene has walls above 1e6
-// N/m, so none is tried. `stop` ends the trial early; the result is then of no use.
+// law with a ledger gives the hand at most its energy. A wall that no hand reaches is not held.
+// named: above 0; no scene has walls above 1e6 N/m, so none is tried. `stop` ends the trial early;
+// the result is then of no use.
 WallTrial try_wall(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                    double named, const std::atomic<bool>* stop = nullptr);
 

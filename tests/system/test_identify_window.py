@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import subprocess
@@ -15,6 +16,7 @@ from window import WindowTest
 
 PADDLE = Path(__file__).with_name("simulated_paddle.py")
 WITH_LOAD, LOAD = "identify again with a load at the tip", "load"
+COOLING = 600  # [s]
 GO_ON, AGAIN = "Go on (Enter)", "Again"
 
 
@@ -179,7 +181,7 @@ class WarmthOfADevice(AxesOfADevice):
     def prepare(self) -> None:
         # A motor that bears next to nothing for hours, and is slow to get warm.
         arm = self.home / "paddle.urdf"
-        model = '<limpid><warmth joint="paddle" continuous="0.005" time="600"/></limpid></robot>'
+        model = '<limpid><warmth joint="paddle" continuous="0.005" time="%g"/></limpid></robot>' % COOLING
         arm.write_text((ASSETS / "devices/paddle.urdf").read_text().replace("</robot>", model))
         self.BOOK = f'taken_for = "{arm}"\n'
         super().prepare()
@@ -192,18 +194,24 @@ class WarmthOfADevice(AxesOfADevice):
                       and (s["device_panel"]["check"] or s["identify"]["plugged"]))
         self.wait("the device in the loop", lambda s: s["identify"]["plugged"] and s["device"])
         by_check = self.wait("warmth", lambda s: s["warmth"] > 1e-9)["warmth"]
+        began = time.monotonic()
+
+        def warmed() -> bool:
+            """By more than it was after the check and would have kept: the age of a state is at most 1 s."""
+            kept = by_check * math.exp(-(time.monotonic() - began - 2) / COOLING)
+            return self.state()["warmth"] > 1.01 * kept
+
         self.key("F7")
         self.wait("the dialog", lambda s: s["dialog"] == "identify")
-        end = time.monotonic() + 60
-        while self.state()["warmth"] <= 1.01 * by_check and time.monotonic() < end:
+        while not warmed() and time.monotonic() < began + 180:  # a stall of 5 ms ends each try
             self.key("Return")
             self.go_on(4)  # until it sweeps
             if self.state()["identify"]["phase"] == "moving":
                 self.key("Escape")
             self.wait("its end", lambda s: s["identify"]["wrong"] != "")
             self.wait("the device back", lambda s: s["identify"]["plugged"])
-            self.go_on(1.5)  # the age of a state is at most 1 s
-        self.assertGreater(self.state()["warmth"], 1.01 * by_check)
+            self.go_on(1.5)
+        self.assertTrue(warmed(), self.state()["warmth"])
 
 
 class ArmOfADevice(PaddleWindow):

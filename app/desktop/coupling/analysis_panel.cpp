@@ -158,9 +158,8 @@ void AnalysisPanel::draw_trial(const Parameters& p, const ArmDescription& arm,
     });
   }
   tooltip(
-      "Simulates a hand that taps this wall and presses it slowly, in three grips. The "
-      "wall "
-      "is the stiffest that theory allows the chosen coupling here. The device does not move.");
+      "Simulates a hand that taps this wall and presses it slowly, in three grips. The wall is the "
+      "stiffest that theory allows the chosen coupling here. The device does not move.");
   if (trial_.named <= 0) return;
   const std::string held = trial_.held > 0 ? fmt::format("{:.0f}", trial_.held) : "none";
   read_out("held in simulation", fmt::format("{} of {:.0f} N/m, {}", held, trial_.named, tried_),

@@ -121,8 +121,8 @@ void DeviceController::say_what_came() {
 void DeviceController::watch() {
   const Snapshot& snapshot = live_.loop().snapshot();
   if (Clock::now() < plugged_at_ + kSettle) return;
-  const Arming before = std::exchange(arming_, snapshot.arming);
-  if (live_.loop().device_in_place() && arming_ == Arming::tripped && before != Arming::tripped) {
+  const std::uint64_t trips = live_.loop().trips();
+  if (std::exchange(trips_said_, trips) != trips && snapshot.arming == Arming::tripped) {
     const std::string words = device_words(snapshot.reading);
     notices_.say(
         fmt::format("Force is off: {}.{}{} After a second, key F switches the force on again.",
@@ -186,7 +186,7 @@ void DeviceController::save() {
 
 void DeviceController::plugged() {
   buttons_.forget();
-  arming_ = Arming::off;
+  trips_said_ = live_.loop().trips();
   plugged_at_ = Clock::now();
 }
 

@@ -106,7 +106,7 @@ class DeviceController {
   std::string problem_;
   Clock::time_point look_at_{}, services_at_{}, retry_at_{}, plugged_at_{};
   ButtonPresses buttons_;
-  Arming arming_ = Arming::off;  // as of the last frame
+  std::uint64_t trips_said_ = 0;  // of the loop's trips()
   std::future<std::vector<FoundDevice>> looking_;
   std::optional<std::vector<std::string>> known_;  // ids of the devices seen last; none: not asked
   bool asking_services_ = false, lent_ = false;

@@ -1,11 +1,10 @@
 #include "app/desktop/device/identify_controller.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <ctime>
 #include <utility>
 
+#include "app/base/dated_file.h"
 #include "app/base/folders.h"
 #include "app/experiments/identify_report.h"
 
@@ -17,8 +16,7 @@ namespace fs = std::filesystem;
 constexpr unsigned kSeed = 1;  // of the simulated device
 
 fs::path folder_for(const std::string& name) {
-  return user_data_dir() / "identified" /
-         fmt::format("{}-{:%Y%m%d-%H%M%S}", as_file_name(name), fmt::localtime(std::time(nullptr)));
+  return dated_file(user_data_dir() / "identified", as_file_name(name));
 }
 
 // Keeps the recorded motion, even if nothing can be concluded from it.

@@ -20,16 +20,27 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFigure = "the figure";
 
-fs::path experiments_dir() { return sessions_dir().parent_path() / "experiments"; }
+// Folder of the results on an arm.
+fs::path experiments_dir(const ExperimentArm& on) {
+  std::string name = on.name;
+  std::ranges::replace(name, '/', '_');  // an arm's name may be any text
+  return sessions_dir().parent_path() / (on.built_in() ? "experiments" : "experiments on " + name);
+}
 
-std::vector<fs::path> sessions_of(const Experiment& experiment) {
+std::vector<fs::path> sessions_in(const fs::path& dir) {
   std::vector<fs::path> files;
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(experiments_dir() / experiment.name, none)) {
+  for (const auto& entry : fs::directory_iterator(dir, none)) {
     if (entry.path().extension() == ".h5") files.push_back(entry.path());
   }
   std::ranges::sort(files);
   return files;
+}
+
+// The verdict on all checks in a word.
+const char* word_for(const Outcome& outcome) {
+  if (!outcome.passed()) return "failed";
+  return outcome.arm.empty() ? "passed" : "measured";
 }
 
 // Draws each check in words, its value with what it was judged by, and its verdict.
@@ -63,15 +74,54 @@ void draw_checks(const std::vector<Check>& checks) {
 
 }  // namespace
 
+// Offers the built-in arm and the one on the screen, without and with the readings of its file.
+void ExperimentsPanel::offer(const ArmDescription& arm) {
+  if (running_.busy() || !queue_.empty()) return;  // they run on what was chosen
+  const auto& [text, tip] = offered_for_;
+  if (!offered_.empty() && text == arm.urdf && tip == arm.tip_link) return;
+  offered_for_ = {arm.urdf, arm.tip_link};
+  const bool had_readings = !offered_.empty() && on().arm.readings;
+  const bool was_built_in = offered_.empty() || on().arm.built_in();
+  offered_ = {{built_in_arm(), {}}};
+  if (arm.urdf != offered_.front().arm.description.urdf) {
+    offered_.push_back({experiment_arm(arm, false), {}});
+  }
+  if (arm.encoder_step > 0 || arm.assumed_delay > 0 || arm.delay.value_or(0) > 0) {
+    offered_.push_back({experiment_arm(arm, true), {}});
+  }
+  for (Offered& each : offered_) {
+    for (const Experiment& one : experiments()) {
+      if (std::string why = why_not(one, each.arm); !why.empty()) {
+        each.refusals.emplace(one.name, std::move(why));
+      }
+    }
+  }
+  on_ = was_built_in ? 0 : std::min<std::size_t>(had_readings ? 2 : 1, offered_.size() - 1);
+}
+
+const std::string& ExperimentsPanel::refusal(const Experiment& experiment) const {
+  static const std::string kNone;
+  const auto found = on().refusals.find(experiment.name);
+  return found == on().refusals.end() ? kNone : found->second;
+}
+
+fs::path ExperimentsPanel::dir() const { return experiments_dir(on().arm); }
+
+ExperimentsPanel::Verdict* ExperimentsPanel::verdict_of(const Experiment& experiment) {
+  const auto found = verdicts_.find(dir() / experiment.name);
+  return found == verdicts_.end() ? nullptr : &found->second;
+}
+
 void ExperimentsPanel::start(const Experiment& experiment) {
   current_ = &experiment;
   began_ = ImGui::GetTime();
   stopping_ = false;
   ++begun_;
-  running_.start(experiment.name, [&experiment](TaskProgress& progress) {
-    TrialRunner::Options options;
-    options.dir = experiments_dir();
-    options.threads = 1;  // the loop and the picture need the rest
+  TrialRunner::Options options;
+  options.dir = dir();
+  options.arm = on().arm;
+  options.threads = 1;  // the loop and the picture need the rest
+  running_.start(experiment.name, [&experiment, options](TaskProgress& progress) mutable {
     options.stop = &progress.cancel;
     options.progress = [&progress](double part) { progress.part = part; };
     Outcome outcome = carry_out(experiment, options);
@@ -86,12 +136,14 @@ void ExperimentsPanel::take() {
     if (auto outcome = running_.take()) {
       ended = true;
       Verdict verdict{.outcome = std::move(*outcome),
-                      .file = experiments_dir() / (std::string(current_->name) + ".png"),
-                      .trials = sessions_of(*current_)};
-      notices_.say(fmt::format("{}: {}", current_->name,
-                               verdict.outcome.passed() ? "passed" : "a check failed"),
-                   !verdict.outcome.passed());
-      verdicts_.insert_or_assign(current_->name, std::move(verdict));
+                      .file = dir() / (std::string(current_->name) + ".png"),
+                      .trials = sessions_in(dir() / current_->name)};
+      const bool passed = verdict.outcome.passed();
+      notices_.say(
+          fmt::format("{}{}: {}", current_->name, on().arm.built_in() ? "" : " on " + on().arm.name,
+                      passed ? word_for(verdict.outcome) : "a check failed"),
+          !passed);
+      verdicts_.insert_or_assign(dir() / current_->name, std::move(verdict));
       if (!chosen_) shown_ = current_;
     }
   } catch (const std::exception& e) {
@@ -124,8 +176,9 @@ std::string ExperimentsPanel::under_way() const {
   return text;
 }
 
-fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
+fs::path ExperimentsPanel::draw(bool& open, ScreenRect view, const ArmDescription& arm) {
   take();
+  offer(arm);
   if (!open) return {};
   fs::path chosen;
   // At the window's right edge it leaves the arm, its plots and the pressed button in sight.
@@ -138,6 +191,8 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
   if (begin_dialog("Experiments", open, ImGuiWindowFlags_None)) {
     const float list = std::min(22 * em, 0.5f * ImGui::GetContentRegionAvail().x);
     ImGui::BeginGroup();
+    ImGui::SetNextItemWidth(list);
+    draw_arm();
     const float buttons = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().ItemSpacing.y;
     ImGui::BeginChild("list", {list, -buttons});
     draw_list();
@@ -148,16 +203,16 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
     ImGui::EndGroup();
     ImGui::SameLine();
     ImGui::BeginChild("verdict", {0, 0});
-    const auto found = shown_ == nullptr ? verdicts_.end() : verdicts_.find(shown_->name);
-    if (found != verdicts_.end()) {
-      chosen = draw_verdict(found->second);
+    Verdict* verdict = shown_ == nullptr ? nullptr : verdict_of(*shown_);
+    if (verdict != nullptr) {
+      chosen = draw_verdict(*verdict);
     } else {
       ImGui::TextWrapped(
           "The list shows the paper's experiments, then the experiments on the predictive law and "
           "on moving objects. Each experiment runs in the ordinary loop, with recorded hand "
           "motions or with motions computed from a fixed seed. Figures, tables, verdicts and all "
           "trials are saved in this folder:\n%s",
-          experiments_dir().c_str());
+          dir().c_str());
       ImGui::Spacing();
       ImGui::TextWrapped(
           "Run an experiment from the list at the left. Its figure and checks then appear here.");
@@ -168,9 +223,38 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
   return chosen;
 }
 
-// Draws the name of the command and the state of an experiment, below its words.
+// Draws the choice of the arm on which experiments run.
+void ExperimentsPanel::draw_arm() {
+  const auto label = [](const Offered& each) {
+    return each.arm.built_in() ? "On the built-in arm, ideal" : "On " + each.arm.name;
+  };
+  ImGui::BeginDisabled(running_.busy() || !queue_.empty());
+  const bool open = ImGui::BeginCombo("##arm", label(on()).c_str());
+  note_place("arm of the experiments");
+  if (open) {
+    for (std::size_t i = 0; i < offered_.size(); ++i) {
+      const std::string words = label(offered_[i]);
+      if (ImGui::Selectable(words.c_str(), i == on_)) on_ = i;
+      note_place(words.c_str());
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::EndDisabled();
+  tooltip(
+      "Bounds are promised for the built-in arm alone. On another arm, experiments measure and do "
+      "not judge. To choose another arm, open it first (Device > Open arm).");
+}
+
+// Draws the name of the command and the state of an experiment, or why it does not run, below its
+// words.
 void ExperimentsPanel::draw_state(const Experiment& experiment) {
   const Palette& colours = current_palette();
+  if (const std::string& refused = refusal(experiment); !refused.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
+    ImGui::TextWrapped("%s", refused.c_str());
+    ImGui::PopStyleColor();
+    return;
+  }
   ImGui::TextColored(colour_vector(colours.muted), "%s", experiment.name);
   if (running_.busy() && current_ == &experiment) {
     ImGui::SameLine();
@@ -180,12 +264,11 @@ void ExperimentsPanel::draw_state(const Experiment& experiment) {
                  part > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1 - part) / part) : "");
     return;
   }
-  const auto found = verdicts_.find(experiment.name);
-  if (found == verdicts_.end()) return;
-  const bool passed = found->second.outcome.passed();
+  const Verdict* verdict = verdict_of(experiment);
+  if (verdict == nullptr) return;
   ImGui::SameLine();
-  ImGui::TextColored(colour_vector(passed ? colours.text : colours.broken), "%s",
-                     passed ? "passed" : "failed");
+  ImGui::TextColored(colour_vector(verdict->outcome.passed() ? colours.text : colours.broken), "%s",
+                     word_for(verdict->outcome));
 }
 
 // Draws an experiment's words as an item that can be chosen, over as many lines as they take.
@@ -216,7 +299,8 @@ void ExperimentsPanel::draw_list() {
       ImGui::TableNextColumn();
       const bool runs = running_.busy() && current_ == &experiment;
       const bool waits = std::ranges::find(queue_, &experiment) != queue_.end();
-      ImGui::BeginDisabled(runs || waits);
+      const std::string& refused = refusal(experiment);
+      ImGui::BeginDisabled(runs || waits || !refused.empty());
       if (ImGui::Button(runs ? "runs" : waits ? "waits" : "Run", {-1, 0})) {
         queue_.push_back(&experiment);
       }
@@ -243,7 +327,9 @@ void ExperimentsPanel::draw_buttons() {
     ImGui::EndDisabled();
   } else if (noted_button("Run all")) {
     chosen_ = false;
-    for (const Experiment& experiment : experiments()) queue_.push_back(&experiment);
+    for (const Experiment& experiment : experiments()) {
+      if (refusal(experiment).empty()) queue_.push_back(&experiment);
+    }
   }
 }
 

@@ -1,11 +1,9 @@
 #include "app/desktop/experiments/sweep_controller.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <ctime>
-
+#include "app/base/dated_file.h"
 #include "app/base/folders.h"
 #include "app/desktop/base/settings.h"
 #include "app/sweep/record_point.h"
@@ -171,9 +169,7 @@ void SweepController::follow_map() {
 }
 
 void SweepController::start(const SweepDraft& draft) {
-  const fs::path folder =
-      sweeps_dir() / fmt::format("{}-{:%Y%m%d-%H%M%S}", as_file_name(short_name(draft)),
-                                 fmt::localtime(std::time(nullptr)));
+  const fs::path folder = dated_file(sweeps_dir(), as_file_name(short_name(draft)));
   std::error_code none;
   fs::create_directories(folder, none);
   const std::string text = plan_text(draft);

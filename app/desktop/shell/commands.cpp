@@ -1,11 +1,10 @@
 #include "app/desktop/shell/commands.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 
+#include "app/base/dated_file.h"
 #include "app/base/folders.h"
 #include "app/base/open_elsewhere.h"
 #include "app/desktop/base/passivity_break.h"
@@ -94,10 +93,6 @@ void lead_panel(Desktop& d) {
   const auto next = static_cast<int>(d.led_panel) + 1;
   d.led_panel =
       next > static_cast<int>(LedPanel::right) ? LedPanel::none : static_cast<LedPanel>(next);
-}
-
-std::string picture_name() {
-  return fmt::format("limpid-{:%Y%m%d-%H%M%S}.png", fmt::localtime(std::time(nullptr)));
 }
 
 Command::Label force_label(const Desktop& d) {
@@ -394,7 +389,7 @@ constexpr std::array kCommands{
     row("export.forget", "Hide the line about the export", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.exporter.forget(); }, {.why_not = nothing_written}),
     row("window.save_picture", "Save picture", "File", "F12", "save a picture of the window",
-        [](Desktop& d) { d.asked.picture = sessions_dir() / picture_name(); }),
+        [](Desktop& d) { d.asked.picture = dated_file(sessions_dir(), "limpid", "png"); }),
     row("edit.undo", "Undo", "Edit", "Ctrl+Z", "undo",
         [](Desktop& d) { d.marking.can_undo() ? d.marking.undo() : d.document.undo(); },
         {.repeats = true}),

@@ -71,7 +71,7 @@ DrawDialog about(Desktop&) {
 
 DrawDialog experiments(Desktop& d) {
   return [&d, panel = std::make_shared<ExperimentsPanel>(d.notices)](bool& open, ScreenRect view) {
-    const fs::path trial = panel->draw(open, view);
+    const fs::path trial = panel->draw(open, view, d.live.stage().arm());
     d.experiments_under_way = panel->under_way();
     if (trial.empty()) return;
     open = false;

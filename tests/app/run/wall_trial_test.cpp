@@ -72,6 +72,16 @@ TEST(WallTrial, PressesArmsThatMoveInALineOrAPlane) {
   }
 }
 
+// 5 N m of friction are 38 N at the tip, and the hand presses with at most 4 N.
+TEST(WallTrial, HoldsNoWallThatNoHandReaches) {
+  const ArmDescription arm = test::omni();
+  Parameters p = of(CouplingKind::predictive);
+  p.friction = 5;
+  const WallTrial trial = try_wall(arm, rest_pose(arm), p, 500);
+  EXPECT_EQ(trial.held, 0);
+  EXPECT_EQ(trial.fault, "no simulated hand reaches a wall of 500 N/m");
+}
+
 TEST(WallTrial, EndsWhenItIsStopped) {
   const ArmDescription arm = test::omni();
   const std::atomic<bool> stop = true;
