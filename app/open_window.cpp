@@ -144,7 +144,7 @@ WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   app.add_option("FILE", options->files,
                  "to open in the window: a recording, a sweep's folder or table, a scene, a model, "
                  "a hand, an arm")
-      ->transform(or_shipped({"scenes", "devices", "sessions", "stories"}), "", "")
+      ->transform(or_shipped({"scenes", "devices", "sessions", "stories", "hands"}), "", "")
       ->type_name("");
   add(app, *options);
   auto* command = app.add_subcommand(

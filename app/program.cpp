@@ -169,7 +169,8 @@ int run_program(int argc, char** argv, const VideoMakers& videos) {
   } catch (const CLI::ParseError& e) {
     return refuse(e);
   } catch (const UsageError& e) {
-    return refuse(e);
+    // The value of an unknown option may be taken for a file, which does not exist.
+    return app.remaining_size(true) > 0 ? refuse(unexpected(app)) : refuse(e);
   } catch (const ParameterError& e) {
     return refuse(e);
   } catch (const FileError& e) {

@@ -195,7 +195,10 @@ Analyzed of_session(const AnalyzeOptions& options) {
   Analyzed all{std::move(plan.arm), std::move(plan.document), p, {}, {}};
   all.hand = judged(all.arm, p, all.document.scene, recorded_grip(session, options.grip_of));
   const Grip& grip = all.hand->grip;
-  all.pose = grip.measured ? grip.pose : rest_pose(all.arm);
+  if (!grip.measured) {
+    throw FileError(fmt::format("{}: {}", options.grip_of, grip.unknown));
+  }
+  all.pose = grip.pose;
   if (grip.known()) all.p = with_grip(p, grip);
   return all;
 }
@@ -239,6 +242,10 @@ int analyze_command(const AnalyzeOptions& options) {
   const std::optional<InHands> hands = judged_in_hands(options, of, a, tip);
   if (!options.json) {
     if (of.hand) print_measured(*of.hand);
+    if (of.hand && !of.hand->grip.known()) {
+      fmt::print("the hand below             {:.4g} N/m, as in the session's settings\n",
+                 p.hand_stiffness);
+    }
     print(a, arm, p);
     if (options.mass) return 0;
     if (tip) print(*tip, trial, p, options.all);
@@ -319,8 +326,8 @@ Command declare_analyze(CLI::App& app) {
           "a session in which the grip was measured (`limpid run --measure-grip`, or the window's "
           "Hand section): shows stiffness, damping and mass of that hand with bounds, and eta_min "
           "and stable walls in that hand; device, scene and settings come from the session")
+      ->transform(or_shipped({"sessions"}), "", "")
       ->type_name("SESSION.h5")
-      ->check(CLI::ExistingFile)
       ->excludes(mass)
       ->excludes(grip)
       ->excludes("--device")

@@ -232,6 +232,14 @@ void print_table(const Characterized& subject, const Characterization& found) {
                    ? "unstable"
                    : fmt::format("{:.1f} g, {:.2f} N s/m", 1e3 * free->inertia, free->damping));
   }
+  const auto friction = std::ranges::find(subject.numbers, "friction", &KnownNumber::key);
+  if (friction != subject.numbers.end() && friction->value > 0) {
+    fmt::print(
+        "The arm's friction resists the hand with {:.2g} N. The measured stiffness, mass and "
+        "damping contain this friction, so they can be negative, or several times the values of "
+        "`limpid analyze`.\n",
+        friction->value);
+  }
   fmt::print("\n");
 }
 

@@ -22,6 +22,7 @@
 #include "app/stage/load_files.h"
 #include "app/story/story.h"
 #include "app/sweep/sweep_plan.h"
+#include "app/sweep/sweep_table.h"
 #include "core/base/model_kinds.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
@@ -77,16 +78,16 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
                                      : "gains        fitted: " + fit);
   const Analysis a = analyze(arm, rest, p, std::nullopt);
   report.facts.push_back("             for " + basis_text(arm, p));
-  if (const std::string filed = readings_text(arm, p); !filed.empty()) {
-    report.facts.push_back("readings     " + filed +
-                           "; --readings takes the values of the arm's file");
-  }
   report.facts.push_back(
       fmt::format("             condition (3) {}; by equation (25) the proposed law is passive at "
                   "an eta of {:.2f} or above",
                   a.condition3.holds ? "is met" : "is BROKEN", a.eta_min));
   if (const std::string weak = weak_spring_text(arm, p); !weak.empty()) {
     report.facts.push_back("             note: " + weak);
+  }
+  if (const std::string filed = readings_text(arm, p); !filed.empty()) {
+    report.facts.push_back("readings     " + filed +
+                           "; --readings takes the values of the arm's file");
   }
   if (!a.condition3.holds) {
     report.warnings.push_back(
@@ -181,6 +182,7 @@ void list_inertias(const ArmDescription& arm, CheckReport& report) {
 
 CheckReport on_arm(const std::string& file, const InputOptions& input) {
   const ArmDescription arm = load_arm(file, input.tip, Xacro::expand).arm;
+  require_readings(input, arm);
   CheckReport report{{}, arm.warnings};
   double mass = 0;
   for (const Link& link : arm.links) mass += link.mass;
@@ -260,6 +262,22 @@ CheckReport on_model(const std::string& file) {
   return {std::move(report.facts), std::move(report.warnings)};
 }
 
+// Warns of the path's fastest part if it is faster than a device's tip may be: times in ms and
+// positions in mm are the usual slips.
+void list_speed(const HandPath& hand, CheckReport& report) {
+  double fastest = SafetyLimits{}.tip_speed, when = -1;
+  for (std::size_t i = 1; i < hand.time.size(); ++i) {
+    const double moved = (hand.position[i] - hand.position[i - 1]).norm();
+    const double speed = moved / (hand.time[i] - hand.time[i - 1]);
+    if (speed > fastest) fastest = speed, when = hand.time[i - 1];
+  }
+  if (when < 0) return;
+  report.warnings.push_back(fmt::format(
+      "the hand moves at {:.3g} m/s at {:.3f} s; a hand at a device's tip stays below {:g} m/s, "
+      "above which a real device's force fades; are the times in s, and the positions in m?",
+      fastest, when, SafetyLimits{}.tip_speed));
+}
+
 CheckReport on_hand(const std::string& file, const InputOptions& input) {
   RunPlan plan;
   plan.arm = arm_of(input);
@@ -274,6 +292,7 @@ CheckReport on_hand(const std::string& file, const InputOptions& input) {
   if (std::string far = out_of_reach(plan); !far.empty()) {
     report.warnings.push_back(std::move(far));
   }
+  list_speed(plan.hand, report);
   return report;
 }
 
@@ -300,7 +319,6 @@ void refuse_options(const InputOptions& input, bool world, const char* kind) {
   for (const auto& [given, option] :
        {std::pair(world && !input.device.empty(), "--device"),
         {world && !input.tip.empty(), "--tip"},
-        {!input.scene.empty(), "--scene"},
         {input.readings, "--readings"},
         {input.set_parameters(), "--set, --config, --coupling, --eta, --alpha"}}) {
     if (given) throw UsageError(fmt::format("{}: not for {}", option, kind));
@@ -309,10 +327,33 @@ void refuse_options(const InputOptions& input, bool world, const char* kind) {
 
 constexpr std::size_t kLongestToml = 10'000'000;  // [bytes]
 
+// Whether a table has settings, as a file of --config has them.
+bool has_settings(const toml::table& keys) {
+  return std::ranges::any_of(parameter_table(), [&](const ParameterInfo& info) {
+    return static_cast<bool>(keys.at_path(info.key));
+  });
+}
+
+// Says what a file is that can be no scene; empty if it can be one.
+const char* not_a_scene(const toml::table& keys) {
+  if (has_settings(keys)) return "settings of a run, as --config reads them";
+  for (const auto& [key, node] : keys) {
+    const toml::table* part = node.as_table();
+    if (part != nullptr && part->contains("show_plots")) return "layouts of the window";
+    if (part != nullptr && has_settings(*part))
+      return "presets of settings, as the window has them";
+  }
+  return "";
+}
+
 CheckReport on_toml(const CheckOptions& options) {
   const toml::table keys = parse_toml(read_text(options.file, kLongestToml), options.file);
   const bool story = keys.contains("step");
   if (!story && !keys.contains("axis") && !keys.contains("measure")) {
+    if (const std::string_view what = not_a_scene(keys); !what.empty()) {
+      throw FileError(
+          fmt::format("{}: {}; needed: a scene, a story or a sweep", options.file, what));
+    }
     return on_scene(options.file, options.input);
   }
   refuse_options(options.input, true,
@@ -341,9 +382,12 @@ CheckReport on(const CheckOptions& options) {
     return on_model(options.file);
   }
   if (suffix == ".h5") {
-    throw FileError(fmt::format(
-        "{0}: a recording or a table; `limpid info {0}` shows what a recording contains",
-        options.file));
+    if (sweep_table_at(file)) {
+      throw FileError(fmt::format("{0}: a sweep's table; `limpid play {0}` opens it in the window",
+                                  options.file));
+    }
+    throw FileError(
+        fmt::format("{0}: a recording; `limpid info {0}` shows what it contains", options.file));
   }
   throw FileError(
       fmt::format("{}: this kind of file is not known; needed: an arm (.urdf, .xacro), a scene, a "
@@ -392,7 +436,7 @@ Command declare_check(CLI::App& app) {
       ->transform(or_shipped({"scenes", "devices", "hands", "stories", "sweeps"}), "", "")
       ->type_name("ARM.urdf|SCENE.toml|MODEL|HAND.csv")
       ->required();
-  options->input.add_world(*command);
+  options->input.add_arm(*command);
   options->input.add_readings(*command);
   options->input.add_parameters(*command);
   command->add_flag("--json", options->json, "one JSON object on standard output");

@@ -35,7 +35,12 @@ int say_arm(const ArmOptions& options) {
                         : "was identified; `limpid identify --forget` removes the identified arm"));
   }
   std::string file = options.arm == kAskAgain ? std::string() : options.arm;
-  if (!file.empty() && file != kBuiltInArm) file = std::filesystem::absolute(file).string();
+  if (!file.empty() && file != kBuiltInArm) {
+    if (!std::filesystem::exists(file)) {
+      throw FileError(file + ": no such file" + shipped_hint(file, {"devices"}));
+    }
+    file = std::filesystem::absolute(file).string();
+  }
   const std::unique_ptr<Device> device = hub.open_to_look();
   hub.say_arm(file, file.empty() ? std::string() : options.tip, &device->traits());
   std::string said = "no arm is chosen for this device any more";
@@ -121,6 +126,7 @@ Command declare_devices(CLI::App& app) {
           ->add_option("--arm", options->arm,
                        fmt::format("the device's arm: a URDF, or {}; {}: forget the chosen arm",
                                    kBuiltInArm, kAskAgain))
+          ->transform(or_shipped({"devices"}), "", "")
           ->type_name("FILE.urdf");
   command->add_option("--tip", options->tip, "the link of that URDF that the hand holds")
       ->needs(arm);

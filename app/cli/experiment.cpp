@@ -97,13 +97,10 @@ ExperimentArm arm_under(const InputOptions& input) {
   ExperimentArm on = built_in_arm();
   const std::string built_in = on.description.urdf;
   if (!input.device.empty() || !input.tip.empty()) on.description = arm_of(input);
-  on.settings = make_parameters(input, on.description);
   const ArmDescription& arm = on.description;
+  require_readings(input, arm);
+  on.settings = make_parameters(input, arm);
   on.readings = input.readings;
-  if (on.readings && on.settings.encoder_step == 0 && on.settings.device_delay == 0) {
-    throw UsageError(fmt::format(
-        "--readings: the file of the arm {} has neither encoder steps nor a delay", arm.name));
-  }
   std::vector<std::string> with = input.settings;
   if (on.readings) with.insert(with.begin(), "its readings");
   if (arm.urdf != built_in || !with.empty()) {
@@ -139,6 +136,7 @@ std::vector<std::string> files_of(const std::vector<const E*>& wanted) {
 
 int run(const ExperimentOptions& options) {
   refuse_what_has_no_effect(options.input);
+  options.live.say_unused();
   auto wanted = chosen(experiments(), options.name, " is not an experiment");
   const ExperimentArm on = arm_under(options.input);
   keep_those_for(on, wanted);
@@ -210,8 +208,8 @@ int run_on_device(const ExperimentOptions& options) {
   }
   const auto wanted = chosen(live_experiments(), options.name, ": not together with --live");
   keep_trials(wanted, options);
-  claim_out({options.out, "limpid experiment", files_of(wanted), options.force});
   LiveBench bench(options.live, options.input);
+  claim_out({options.out, "limpid experiment", files_of(wanted), options.force});
   std::vector<std::string> failed;  // checks
   try {
     for (const LiveExperiment* one : wanted) {

@@ -317,7 +317,8 @@ Command declare_recover(CLI::App& app) {
   auto options = std::make_shared<RecoverOptions>();
   command
       ->add_option("SESSION.h5.part", options->part,
-                   "the recording that was interrupted: a file whose name ends in .part")
+                   "the recording that was interrupted: a file whose name ends in .part; it is "
+                   "deleted when the session file is complete")
       ->type_name("")
       ->required();
   command->add_option("--out", options->out, "the file to write instead of SESSION.h5")

@@ -214,6 +214,13 @@ void ask_for_load(const IdentifyOptions& options) {
   ask();
 }
 
+// Says how to stay within the limits.
+const char* remedy(ExcitationEnd end, bool simulated) {
+  if (end != ExcitationEnd::limit) return "";
+  return simulated ? "; try a smaller --range or --torque, or another --seed"
+                   : "; try a smaller --range or --torque";
+}
+
 // Moves the device, and again with the load, and writes each motion however it ended. False if one
 // ended early.
 bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
@@ -222,8 +229,9 @@ bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
     run = watched([&](IdentifyProgress& motion) { return mover(load, motion); });
     write_motion(run, fs::path(options.out) / file);
     if (run.end == ExcitationEnd::complete) return true;
-    fmt::print(stderr, "limpid: ended: {}; {} contains the motion up to that time\n",
-               explain(run, options.order), (fs::path(options.out) / file).string());
+    fmt::print(stderr, "limpid: ended: {}{}; {} contains the motion up to that time\n",
+               explain(run, options.order), remedy(run.end, options.device == kSimulated),
+               (fs::path(options.out) / file).string());
     return false;
   };
   if (!move(false, bare, kMotionFile)) return false;
@@ -239,6 +247,7 @@ int identify_simulated(IdentifyOptions& options) {
     throw UsageError(
         "--masses-right: the masses of the simulated device differ from those in the arm's file");
   }
+  order.seed = options.seed;
   SimulatedBench bench = simulated_bench(order, options.seed);
   const auto move = [&](bool with_load, IdentifyProgress& motion) {
     return move_simulated(bench, order, with_load, motion);
@@ -271,8 +280,7 @@ int identify_device(IdentifyOptions options) {
   if (options.out.empty()) throw UsageError("--out is required");
   IdentifyRequest& order = options.order;
   order.fit.gravity = gravity_of(options.gravity);
-  SceneDocument scene;
-  read_world(options.input, order.guess, scene);
+  order.guess = arm_of(options.input);
   if (options.device == kSimulated) {
     claim_out(out_folder(options, kSimulated));
     return identify_simulated(options);
@@ -322,10 +330,11 @@ Command declare_identify(CLI::App& app) {
       fmt::format("the device's id, as `limpid devices` lists it, or \"{}\": a simulated device "
                   "whose values differ from its file, drawn by --seed; default: the device in use",
                   kSimulated));
-  options->input.add_world(*command);
+  options->input.add_arm(*command);
   command
       ->add_option("--out", options->out,
-                   "folder for report.html, identified.urdf, .json, .svg and motion.csv")
+                   "REQUIRED, except with --forget: the folder for report.html, identified.urdf, "
+                   ".json, .svg and motion.csv")
       ->type_name("DIR");
   command->add_option("--gravity", options->gravity,
                       "none, or X,Y,Z [m/s^2] in the frame of the arm's base");

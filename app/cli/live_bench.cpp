@@ -46,6 +46,13 @@ void LiveOptions::add(CLI::App& command) {
   command.add_flag("--yes", yes, "with --live: begin without a question");
 }
 
+void LiveOptions::say_unused() const {
+  if (!yes || device) return;
+  fmt::print(stderr,
+             "limpid: note: --yes changes nothing here: only --live asks a question before it "
+             "begins\n");
+}
+
 void choose_device(const std::string& id, DeviceHub& hub, const std::string& otherwise) {
   std::string wanted = id.empty() ? hub.in_use() : id;
   if (const std::string named = device_named(wanted); !named.empty()) wanted = named;
@@ -92,16 +99,16 @@ ArmDescription arm_of_device(const DeviceTraits& traits, const DeviceHub& hub,
 }
 
 LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : yes_(options.yes) {
-  if (!yes_ && isatty(STDIN_FILENO) == 0) {
-    throw UsageError(
-        "a person must allow the device to push, but there is no terminal to ask in; needed: "
-        "--yes, or a terminal");
-  }
   DeviceHub hub(device_store_file(), by_rtkit());
   std::unique_ptr<Device> device = open_device(*options.device, hub, "");
   const DeviceTraits& traits = device->traits();
   name_ = traits.name;
   if (!traits.pushes) throw UsageError(name_ + ": has no motors");
+  if (!yes_ && isatty(STDIN_FILENO) == 0) {
+    throw UsageError(
+        "a person must allow the device to push, but there is no terminal to ask in; needed: "
+        "--yes, or a terminal");
+  }
   plan_.arm = arm_of_device(traits, hub, input);
   const std::filesystem::path scene =
       input.scene.empty() ? scene_of_device(plan_.arm) : std::filesystem::path(input.scene);
@@ -195,7 +202,8 @@ bool LiveBench::carry_out(const LiveTask& task, const Parameters& p, const LiveR
   bool whole = false;
   std::uint64_t lost = 0;
   try {
-    whole = ask(task.instruction) && await_force(task.measure_grip);
+    // A recording begins with all of the force: before that its first rows would be missing.
+    whole = ask(task.instruction) && await_force(task.measure_grip || recording != nullptr);
     if (whole && recording) run_->record(std::move(recording));
     if (whole && task.measure_grip) run_->measure_grip();
     whole = whole && lead(task, p.tick, row, off);

@@ -18,6 +18,8 @@ struct LiveOptions {
 
   // Declares --live and --yes.
   void add(CLI::App& command);
+  // Prints a note on --yes without --live, which changes nothing.
+  void say_unused() const;
 };
 
 // Makes the device of this id the hub's, as open_device() does. Errors: UsageError.

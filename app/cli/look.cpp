@@ -82,14 +82,17 @@ void announce(const std::string& name, double seconds) {
 LookEnd record_look(Look& look, const LookOptions& options,
                     const std::shared_ptr<DeviceSeen>& seen) {
   LookEnd end;
+  seen->noting = false;  // what is told is of the time that is recorded
   LiveRun run(look.plan, look.limits, std::make_unique<OnlyLooked>(std::move(look.opened), seen),
               by_rtkit());
   look.plan.parameters = run.taken(look.plan.parameters);
   SessionInfo info = session_info(look.plan);
   info.safety = limits_text(look.limits);
-  run.record(std::make_unique<Recorder>(options.record, info, look.plan.parameters, options.force,
-                                        Recorder::kLiveRoom));
+  auto recorder = std::make_unique<Recorder>(options.record, info, look.plan.parameters,
+                                             options.force, Recorder::kLiveRoom);
   announce(look.device.traits.name, options.seconds);
+  run.record(std::move(recorder));
+  seen->noting = true;
   Progress progress({.title = "look", .whole = options.seconds, .unit = "s", .rate = ""});
   try {
     end.whole = run.pass(options.seconds, interrupted, [&](std::span<const double>) {
@@ -98,6 +101,7 @@ LookEnd record_look(Look& look, const LookOptions& options,
   } catch (const std::exception& error) {
     end.wrong = error.what();
   }
+  seen->noting = false;
   try {
     const std::uint64_t lost = run.finish_recording();
     if (lost > 0 && end.wrong.empty()) {

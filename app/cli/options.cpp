@@ -68,9 +68,12 @@ RunPlan plan_from_session(const InputOptions& options) {
       }
     };
     move(plan.changes);
-    for (Lane& lane : plan.beside) move(lane.changes);
     plan.force.clear();
     plan.parameters.tick = chosen.tick;
+    for (Lane& lane : plan.beside) {
+      move(lane.changes);
+      lane.parameters.tick = chosen.tick;
+    }
   }
   if (!options.device.empty()) {
     plan.arm = arm_of(options);
@@ -162,7 +165,7 @@ std::function<std::string(std::string)> or_shipped(Kinds kinds) {
   };
 }
 
-void InputOptions::add_world(CLI::App& command) {
+void InputOptions::add_arm(CLI::App& command) {
   command
       .add_option("--device", device,
                   "the arm; default: the built-in arm, like an Omni but ideal. "
@@ -174,6 +177,10 @@ void InputOptions::add_world(CLI::App& command) {
       .add_option("--tip", tip,
                   "the link of the arm that the hand holds; default: the end of the longest chain")
       ->type_name("LINK");
+}
+
+void InputOptions::add_world(CLI::App& command) {
+  add_arm(command);
   command.add_option("--scene", scene, "what can be touched; default: a table")
       ->transform(or_shipped({"scenes"}), "", "")
       ->type_name("FILE.toml");
@@ -237,10 +244,8 @@ Parameters make_parameters(const InputOptions& options, Parameters base) {
 
 Parameters make_parameters(const InputOptions& options, const ArmDescription& arm) {
   const Parameters asked = make_parameters(options);
-  if (!options.readings) return make_parameters(options, fitted(arm, asked));
-  Parameters fit = fitted(arm, asked, arm.delay.value_or(arm.assumed_delay));
-  fit.tick = asked.tick;  // the delay is in whole ticks
-  return make_parameters(options, with_readings_of(arm, fit));
+  return make_parameters(options,
+                         options.readings ? fitted_with_readings(arm, asked) : fitted(arm, asked));
 }
 
 std::string device_named(const std::string& words) {
@@ -258,7 +263,15 @@ ArmDescription arm_of(const InputOptions& options) {
   if (!std::filesystem::exists(file)) {
     throw FileError(file + ": no such file" + shipped_hint(file, {"devices"}));
   }
-  return read_urdf(file, options.tip, Xacro::expand);
+  ArmDescription arm = read_urdf(file, options.tip, Xacro::expand);
+  require_readings(options, arm);
+  return arm;
+}
+
+void require_readings(const InputOptions& options, const ArmDescription& arm) {
+  if (!options.readings || arm.encoder_step > 0 || arm.assumed_delay > 0 || arm.delay) return;
+  throw UsageError(fmt::format(
+      "--readings: the file of the arm {} has neither encoder steps nor a delay", arm.name));
 }
 
 void read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document) {

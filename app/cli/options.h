@@ -42,6 +42,8 @@ struct InputOptions {
 
   // Declares --config, --set, --coupling, --eta, --alpha.
   void add_parameters(CLI::App& command);
+  // Declares --device and --tip.
+  void add_arm(CLI::App& command);
   // Declares --device, --tip and --scene.
   void add_world(CLI::App& command);
   // Declares --readings.
@@ -65,6 +67,8 @@ Parameters make_parameters(const InputOptions& options, const ArmDescription& ar
 std::string device_named(const std::string& words);
 // The arm of the options; for a named real device the built-in arm like it.
 ArmDescription arm_of(const InputOptions& options);
+// Refuses --readings for an arm whose file has none. Errors: UsageError.
+void require_readings(const InputOptions& options, const ArmDescription& arm);
 // Reads device and scene, without the models of its meshes; the default scene is one in the
 // device's reach.
 void read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document);

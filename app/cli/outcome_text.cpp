@@ -21,13 +21,14 @@ void print_outcome(const std::string& name, const Outcome& outcome) {
     before = &c;
     if (told) continue;
     const char* verdict = !c.unjudged.empty() ? "----" : c.passed ? "ok  " : "FAIL";
-    fmt::print("  {}  {}: {:.4g}", verdict, c.what, c.value);
+    fmt::print("  {}  {}: {}", verdict, c.what,
+               std::isnan(c.value) ? "not measurable" : fmt::format("{:.4g}", c.value));
     if (c.unjudged.empty()) fmt::print(" {} {:.4g}", c.least ? ">=" : "<=", c.bound);
     if (elsewhere && !c.unjudged.empty()) {
-      fmt::print(" ({}; promised for the built-in arm: {} {:.4g})",
-                 std::isnan(c.value) ? "not measurable"
-                 : c.passed          ? "kept"
-                                     : "missed",
+      fmt::print(" ({}promised for the built-in arm: {} {:.4g})",
+                 std::isnan(c.value) ? ""
+                 : c.passed          ? "kept; "
+                                     : "missed; ",
                  c.least ? ">=" : "<=", c.bound);
     }
     if (c.against && c.against->expected) {

@@ -73,8 +73,12 @@ std::string progress_line(const Progress::Words& words, double done, double seco
   }
   if (part <= 0 || seconds <= 0) return line;
   const double rate = done / seconds;
-  return line + fmt::format(", {:.{}f} {}, {} left", rate, rate < 10 ? 1 : 0, words.rate,
+  return line + fmt::format(", {} {}, {} left", rate_text(rate), words.rate,
                             duration((words.whole - done) / rate));
+}
+
+std::string rate_text(double rate) {
+  return fmt::format("{:.{}f}", rate, rate < 0.95 ? 2 : rate < 9.95 ? 1 : 0);
 }
 
 Progress::Progress(Words words) : words_(std::move(words)) {

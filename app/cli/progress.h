@@ -41,5 +41,7 @@ class Progress {
 
 // The line `seconds` after the work began.
 std::string progress_line(const Progress::Words& words, double done, double seconds);
+// A rate of at least 0.1 in two digits, or more before the point.
+std::string rate_text(double rate);
 
 }  // namespace limpid

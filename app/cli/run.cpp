@@ -57,7 +57,7 @@ MeasuredHand measured(const RunPlan& plan, const GripRecord& record) {
 
 [[noreturn]] void refuse_short_grip() {
   throw UsageError(
-      fmt::format("--measure-grip: needs {:.4g} s; give --duration", grip_run_duration()));
+      fmt::format("--measure-grip: give --duration of at least {:.4g} s", grip_run_duration()));
 }
 
 // Takes a hand that holds the tip at the path's beginning, as long as measuring its grip takes.
@@ -169,9 +169,9 @@ void add_lanes(const RunOptions& options, RunPlan& plan) {
     last = !settings;
     if (!settings) continue;
     Lane added{plan.parameters, {}};
-    for (const std::string& setting : *settings) apply_setting(added.parameters, setting);
-    if (added.parameters.tick != plan.parameters.tick) {
-      throw UsageError(lane_option(lane) + " loop.tick: all runs must have the same tick");
+    for (const std::string& setting : *settings) {
+      check_of_one_lane(key_of_setting(setting), "set it for the first run");
+      apply_setting(added.parameters, setting);
     }
     if (settings->empty()) added.parameters.kind = law_beside(plan.settings());
     plan.beside.push_back(std::move(added));
@@ -361,6 +361,7 @@ int run(const RunOptions& options) {
   if (options.measure_grip && options.input.hand.empty()) hold_still(plan, options.input);
   if (options.measure_grip && !measure_grip(plan)) refuse_short_grip();
   say_about(plan);
+  options.live.say_unused();
   if (options.input.seed && options.input.variation.value_or(0) == 0) {
     fmt::print(stderr,
                "limpid: note: --seed changes nothing here: only variations of the hand are random, "
@@ -392,7 +393,8 @@ int run(const RunOptions& options) {
   fmt::print("{}", log.text(plan));
   if (options.measure_grip) print_measured(measured(plan, log.grip()));
   const double simulated = static_cast<double>(end.rows) * plan.parameters.tick;
-  fmt::print("{:.3f} s in {:.3f} s, {:.0f} times real time\n", simulated, took, simulated / took);
+  fmt::print("{:.3f} s in {:.3f} s, {} times real time\n", simulated, took,
+             rate_text(simulated / took));
   return report(options, end, recorder ? &*recorder : nullptr, log);
 }
 
@@ -416,8 +418,9 @@ Command declare_run(CLI::App& app) {
       "--measure-grip", options->measure_grip,
       fmt::format("measure how the hand holds the device: for {:.3g} s the motors "
                   "add a small force; prints stiffness, damping and mass of the hand "
-                  "with their bounds, and eta_min and the walls that are stable in this hand",
-                  GripProbe::kDuration));
+                  "with their bounds, and eta_min and the walls that are stable in this hand. "
+                  "The run takes at least {:.4g} s",
+                  GripProbe::kDuration, grip_run_duration()));
   for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
     command
         ->add_option_function<std::vector<std::string>>(
@@ -428,7 +431,8 @@ Command declare_run(CLI::App& app) {
             },
             fmt::format("a {} run at the same time, with the same hand; it has the standard "
                         "coupling (another law if a run has the standard coupling already), or "
-                        "these changed settings",
+                        "these changed settings; settings of hand, device and loop are the same "
+                        "for all runs",
                         lane_ordinal(lane)))
         ->type_name("[KEY=VALUE ...]")
         ->expected(0, -1)

@@ -130,6 +130,11 @@ int serve(const ServeOptions& options) {
     worlds->read_for(world.plan.arm);
   } else {
     world = worlds->first();
+    const double chosen = make_parameters(options.input).tick;
+    if (const std::string wrong = refused_tick(world.plan, chosen); !wrong.empty()) {
+      throw UsageError(fmt::format("--hand {}: {}; --set loop.tick={} replaces the tick",
+                                   options.input.hand, wrong, Parameters{}.tick));
+    }
   }
   const fs::path socket = control_path(options.name);
   ServedSession session(std::move(world), real ? std::move(real->device) : nullptr,

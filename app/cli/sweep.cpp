@@ -105,7 +105,10 @@ class Sweeping {
       if (!finished && alone) book_.write();
       if (!finished) return stopped("the same command continues from here");
     }
-    if (!alone && !first && !options_.gather) return 0;
+    if (!alone && !first && !options_.gather) {
+      if (!options_.mpi) say_what_is_there();
+      return 0;
+    }
     book_.gather();
     return finish();
   }
@@ -155,6 +158,19 @@ class Sweeping {
         fmt::format("the tasks continue, and the same command collects the results; scancel -n {} "
                     "ends the tasks",
                     array.name()));
+  }
+
+  // Tells how far all shares together have come.
+  void say_what_is_there() const {
+    std::uint64_t there = 0;
+    for (std::uint64_t i = 0; i < blocks_of(plan_); ++i) {
+      const SweepBlock block = block_of(plan_, i);
+      if (folder_.there(block)) there += block.size;
+    }
+    fmt::print(
+        "part {} is done; {} of {} points are in {}; `limpid sweep {} --out {} --gather` makes "
+        "the table of them\n",
+        options_.shard, there, plan_.points(), options_.out, options_.plan, options_.out);
   }
 
   int stopped(const std::string& advice) {
@@ -238,7 +254,8 @@ Command declare_sweep(CLI::App& app) {
   auto* shard = command->add_option("--shard", options->shard, "run only the I-th of N parts")
                     ->type_name("I/N");
   auto* gather = command->add_flag("--gather", options->gather,
-                                   "run nothing; only collect the existing results");
+                                   "run nothing; only collect the existing results; exit status 1 "
+                                   "if points are missing");
   auto* mpi = command->add_flag("--mpi", options->mpi,
                                 "run only the part of this process (its rank), under mpirun");
   auto* slurm = command->add_flag("--slurm", options->slurm, "run as an array job of Slurm");

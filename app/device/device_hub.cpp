@@ -79,8 +79,10 @@ std::string DeviceHub::go_first() {
   try {
     if (!first_.held()) first_ = DeviceClaim("first window");
     return {};
-  } catch (const HidError& error) {
+  } catch (const ClaimTaken& error) {
     return error.what();
+  } catch (const HidError&) {
+    return {};
   }
 }
 

@@ -50,7 +50,7 @@ class DeviceHub {
 
   // Makes this window the first one, until give_way(), unless another program's window is. The
   // first window connects to a device by itself, others only when told. Returns the owner for
-  // people; empty: this window.
+  // people; empty: this window, or nobody can tell, as opening a device then says why.
   std::string go_first();
   void give_way() { first_ = {}; }
 

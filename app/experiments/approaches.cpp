@@ -26,7 +26,7 @@ constexpr std::array kArms{BenchArm{"built-in, ideal", "omni.urdf"},
 
 ArmUnderLaw arm_under(const BenchArm& bench, CouplingKind kind) {
   ArmUnderLaw at{bench.arm(), {}};
-  at.parameters = with_readings_of(at.arm, fitted(at.arm, {}, at.arm.assumed_delay));
+  at.parameters = fitted_with_readings(at.arm);
   at.parameters.kind = kind;
   return at;
 }

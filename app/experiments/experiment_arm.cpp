@@ -29,9 +29,7 @@ ExperimentArm experiment_arm(const ArmDescription& arm, bool readings) {
   on.description = arm;
   on.name = arm.name + (readings ? " with its readings" : "");
   on.readings = readings;
-  on.settings = readings
-                    ? with_readings_of(arm, fitted(arm, {}, arm.delay.value_or(arm.assumed_delay)))
-                    : fitted(arm);
+  on.settings = readings ? fitted_with_readings(arm) : fitted(arm);
   return on;
 }
 

@@ -142,7 +142,7 @@ std::string findings_text(const Identification& identification, const std::strin
   ordered_json json{
       {"device", identification.device},
       {"arm", found.arm.name},
-      {"provenance", provenance("", std::nullopt)},
+      {"provenance", provenance("", identification.order.seed)},
       {"when", fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::localtime(std::time(nullptr)))},
       {"seconds", run.record.T * static_cast<double>(run.record.rows())},
       {"delay", as_json(found.delay)},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct IdentifyRequest {
   double load = 0;  // mass fixed to the tip for a second motion, which finds the motors' real
                     // torque [kg]; 0: none
   bool masses_right = false;  // the guess's masses are right; the real torque follows from them
+  std::optional<std::uint64_t> seed = {};  // of a simulated device
 };
 inline constexpr double kLeastLoad = 0.001, kMostLoad = 1;  // [kg]
 

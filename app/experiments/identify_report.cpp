@@ -80,8 +80,10 @@ void write_report(const Identification& identification, const std::optional<Find
   body += "</section>\n";
   const auto changes = last ? drift(*last, identification) : std::vector<Drift>{};
   if (!changes.empty()) body += drift_section(changes, last->when);
+  const std::optional<std::uint64_t> seed = identification.order.seed;
   write_page(file, "Identification of " + identification.device,
-             "Arm from which the identification started: " + identification.order.guess.name + ".",
+             "Arm from which the identification started: " + identification.order.guess.name + "." +
+                 (seed ? fmt::format(" Seed of the simulated device: {}.", *seed) : ""),
              body);
 }
 
@@ -160,9 +162,10 @@ FigurePanel readings_panel(const ReadingTimes& timing) {
 }  // namespace
 
 std::string identified_urdf(const Identification& identification) {
-  return urdf_text(identification.found.arm,
-                   fmt::format("identified by {} on {}, from {}", provenance("", std::nullopt),
-                               identification.device, identification.order.guess.name));
+  return urdf_text(
+      identification.found.arm,
+      fmt::format("identified by {} on {}, from {}", provenance("", identification.order.seed),
+                  identification.device, identification.order.guess.name));
 }
 
 DeviceHub::Profile profile_of(const Identification& identification) {
@@ -194,7 +197,7 @@ std::string write_identification(const Identification& identification,
   write(dir / "identified.urdf", identified_urdf(identification));
   write(dir / "identified.json", findings_text(identification, more));
   Figure figure = identify_figure(identification);
-  figure.made_by = provenance("", std::nullopt);
+  figure.made_by = provenance("", identification.order.seed);
   write_figure_data(figure, dir / "identified.csv");
   std::string wrong;
   try {

@@ -80,8 +80,7 @@ struct RobustCase {
   const RobustLaw& of_law() const { return kRobustLaws[law]; }
   const Imperfection& of_way() const { return imperfections()[way]; }
   Parameters parameters(const ArmDescription& description) const {
-    Parameters p =
-        with_readings_of(description, fitted(description, {}, description.assumed_delay));
+    Parameters p = fitted_with_readings(description);
     p.kind = of_law().kind;
     p.delay_most = p.delay + 1;  // as for a device that was identified
     return p;

@@ -386,7 +386,7 @@ FilmCut cut(const FilmOrder& order, const Session& session, const std::string& w
   const double to = order.to.value_or(length);
   if (!(order.from >= 0 && order.from < to && to <= length * (1 + 1e-9))) {
     throw FileError(
-        fmt::format("{}: from {} to {} s; allowed: from 0 to {} s, the end after the beginning",
+        fmt::format("{}: from {} to {} s; allowed: from 0 to {:.9g} s, the end after the beginning",
                     where, order.from, to, length));
   }
   return {order.from, to, order.speed, order.fps.value_or(usual_fps(video_kind(order.out)))};

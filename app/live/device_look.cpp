@@ -116,7 +116,9 @@ void DeviceSeen::take_positions(const DeviceReading& reading, const DeviceTraits
 
 bool OnlyLooked::read(DeviceReading& newest) noexcept {
   const bool here = device_->read(newest);
-  seen_->take(newest, here, device_->traits(), in_seconds(MonotonicTime{}.now()));
+  if (seen_->noting) {
+    seen_->take(newest, here, device_->traits(), in_seconds(MonotonicTime{}.now()));
+  }
   return here;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -62,6 +63,8 @@ class DeviceSeen {
   double median_gap() const { return gaps_.quantile(0.5); }  // between two readings [s]
   double worst_gap() const { return worst_gap_; }            // [s]
   const JointSeen& joint(std::size_t i) const { return joints_[i]; }
+
+  std::atomic<bool> noting{true};  // OnlyLooked passes on what it reads while this is set
 
   // How long the device said so [s].
   double without_hand = 0, fault = 0, uncalibrated = 0;

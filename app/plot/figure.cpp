@@ -24,6 +24,7 @@
 #include "app/base/markup.h"
 #include "app/base/version.h"
 #include "app/run/provenance.h"
+#include "core/base/png_chunk.h"
 #include "core/base/utf8.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/text_file.h"
@@ -78,10 +79,20 @@ int gnuplot(const fs::path& file) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-void add_metadata(const fs::path& svg, const std::string& line) {
+// Puts the line into an SVG or a PNG; false where that cannot be written.
+bool add_line(const fs::path& file, const std::string& line) {
   std::ostringstream drawn;
-  drawn << std::ifstream(svg, std::ios::binary).rdbuf();
-  std::ofstream(svg, std::ios::binary) << with_metadata(drawn.str(), line);
+  drawn << std::ifstream(file, std::ios::binary).rdbuf();
+  std::string bytes = drawn.str();
+  if (file.extension() == ".svg") {
+    bytes = with_metadata(bytes, line);
+  } else if (bytes.size() > kPngHeader && !line.empty()) {
+    bytes.insert(kPngHeader, png_description(line));
+  }
+  std::ofstream out(file, std::ios::binary);
+  out << bytes;
+  out.close();
+  return !out.fail();
 }
 
 // The layout, in pixels: the figure's title on top, in each panel's cell the panel's title, its
@@ -432,14 +443,14 @@ void draw_figure(const Figure& figure, const fs::path& dir, const std::string& n
                          FigureFile{"svg", 1, part(".svg")}};
   const fs::path script = part(".gnuplot");
   std::ofstream(script) << gnuplot_script(figure, files);
-  const int status = gnuplot(script);
+  bool drawn = gnuplot(script) == 0;
   std::error_code failure, none;
   fs::remove(script, none);
-  if (status == 0) add_metadata(part(".svg"), figure.made_by);
+  for (const FigureFile& file : files) drawn = drawn && add_line(file.out, figure.made_by);
   for (const FigureFile& file : files) {
     const fs::path out = dir / (name + file.out.extension().string());
-    if (status == 0) fs::rename(file.out, out, failure);
-    if (status == 0 && !failure) continue;
+    if (drawn) fs::rename(file.out, out, failure);
+    if (drawn && !failure) continue;
     for (const FigureFile& each : files) fs::remove(each.out, none);
     throw std::runtime_error(
         fmt::format("{}: gnuplot could not draw it; is the disk full?", out.string()));

@@ -52,7 +52,7 @@ struct Figure {
   int columns = 1;
   int panel_height = 420;  // [px], of 640 px width
   std::vector<FigurePanel> panels;
-  std::string made_by = {};  // line from provenance(); SVG keeps it as metadata
+  std::string made_by = {};  // line from provenance(); SVG and PNG keep it
 };
 
 // Okabe and Ito's colours for the paper's quantities, as everywhere in the program.

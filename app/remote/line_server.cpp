@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/descriptor.h"
+
 namespace limpid {
 namespace {
 
@@ -72,12 +74,39 @@ std::string owner_in(int lock) {
   return size > 0 ? std::string(bytes.data(), static_cast<std::size_t>(size)) : "another program";
 }
 
-// Takes the lock, which ends with the process in any case; the file stays.
-int take_lock(const fs::path& path) {
+// Returns the address of a socket's path. Errors: ListenError.
+sockaddr_un address_of(const fs::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string text = path.string();
+  if (text.size() >= sizeof(address.sun_path)) {
+    throw ListenError(fmt::format("{}: a socket's path has at most {} characters", text,
+                                  sizeof(address.sun_path) - 1));
+  }
+  text.copy(address.sun_path, text.size());
+  return address;
+}
+
+// Returns whether a program listens on a socket.
+bool somebody_listens(const sockaddr_un& address) {
+  const Descriptor file(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  return connect(*file, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 ||
+         (errno != ECONNREFUSED && errno != ENOENT);
+}
+
+// Takes the lock, which ends with the process in any case; the file stays. Where the system has no
+// locks, the socket itself says whether a program uses it.
+int take_lock(const fs::path& path, const sockaddr_un& address) {
   const fs::path file = path.string() + ".lock";
   const int lock = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kFileMode);
   if (lock < 0) throw failed(file);
-  if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
+  const int code = flock(lock, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
+  if (code != 0 && code != EWOULDBLOCK && !has_no_locks(code)) {
+    close(lock);
+    errno = code;
+    throw failed(file);
+  }
+  if (code == EWOULDBLOCK || (code != 0 && somebody_listens(address))) {
     const std::string owner = owner_in(lock);
     close(lock);
     throw ListenError(
@@ -119,9 +148,10 @@ fs::path control_path(const std::string& name) {
 
 ControlSocket::ControlSocket(const fs::path& path) : path_(path) {
   make_private(path.parent_path());
-  lock_ = take_lock(path);
+  const sockaddr_un address = address_of(path);
+  lock_ = take_lock(path, address);
   try {
-    listen_at();
+    listen_at(address);
   } catch (...) {
     if (file_ >= 0) close(file_);
     close(lock_);
@@ -129,20 +159,12 @@ ControlSocket::ControlSocket(const fs::path& path) : path_(path) {
   }
 }
 
-void ControlSocket::listen_at() {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  const std::string text = path_.string();
-  if (text.size() >= sizeof(address.sun_path)) {
-    throw ListenError(fmt::format("{}: a socket's path has at most {} characters", text,
-                                  sizeof(address.sun_path) - 1));
-  }
-  text.copy(address.sun_path, text.size());
-  unlink(text.c_str());  // left by a killed program: the lock is ours
+void ControlSocket::listen_at(const sockaddr_un& address) {
+  unlink(path_.c_str());  // left by a killed program
   file_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   // Nobody else can enter the folder, so the socket's mode does not matter for a moment.
   if (file_ < 0 || bind(file_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 ||
-      chmod(text.c_str(), kFileMode) != 0 ||
+      chmod(path_.c_str(), kFileMode) != 0 ||
       listen(file_, static_cast<int>(LineServer::kMostClients)) != 0) {
     throw failed(path_);
   }

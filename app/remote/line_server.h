@@ -17,6 +17,8 @@
 #include <string_view>
 #include <thread>
 
+struct sockaddr_un;
+
 namespace limpid {
 
 // Thrown if a socket cannot be opened; what() says why, for people.
@@ -43,7 +45,7 @@ class ControlSocket {
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  void listen_at();
+  void listen_at(const sockaddr_un& address);
 
   std::filesystem::path path_;
   int lock_ = -1, file_ = -1;

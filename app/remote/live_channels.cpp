@@ -22,6 +22,14 @@ std::vector<int> parts_of(const TraceChannels& channels, const std::string& name
 
 }  // namespace
 
+LiveRow::LiveRow(const TraceChannels& channels, std::span<const double> of_lane, std::size_t lane)
+    : row(of_lane.begin(), of_lane.end()), values(static_cast<std::size_t>(channels.count())) {
+  const RowLayout& layout = channels.layout();
+  file_points(layout.in(std::span(row), Column::contact_point),
+              layout.in(of_lane, Column::contact_force));
+  channels.values(row, values, lane);
+}
+
 std::optional<LiveChannel> LiveChannel::find(const TraceChannels& channels,
                                              const std::string& name) {
   if (const auto one = channels.find(name)) return LiveChannel{.parts = {*one}};
@@ -50,17 +58,17 @@ json LiveChannel::unit(const TraceChannels& channels) const {
   return same ? units[0] : units;
 }
 
-json LiveChannel::value(const TraceChannels& channels, std::span<const double> row,
-                        std::span<const double> values) const {
+json LiveChannel::value(const TraceChannels& channels, const LiveRow& row) const {
   json all = json::array();
   if (derived) {
-    const auto known = channels.tips()->of(DerivedColumns::from(channels.layout(), row));
+    const auto known = channels.tips()->of(DerivedColumns::from(channels.layout(), row.row));
     for (const double x : known[*derived]) all.push_back(number(x));
   } else if (column) {
-    for (const double x : channels.layout().in(row, *column)) all.push_back(number(x));
+    for (const double x : channels.layout().in(std::span(row.row), *column))
+      all.push_back(number(x));
   } else {
     for (const int channel : parts) {
-      all.push_back(number(values[static_cast<std::size_t>(channel)]));
+      all.push_back(number(row.values[static_cast<std::size_t>(channel)]));
     }
   }
   return vector ? all : all[0];

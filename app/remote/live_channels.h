@@ -14,6 +14,14 @@ namespace limpid {
 // `x` in JSON: null if it is not finite.
 nlohmann::json number(double x);
 
+// Row of a lane, and the values of all channels in it, as recordings have them: places of contacts
+// that touch nothing are not numbers.
+struct LiveRow {
+  std::vector<double> row, values;
+
+  LiveRow(const TraceChannels& channels, std::span<const double> of_lane, std::size_t lane);
+};
+
 // A channel by its name. A session's vector is a list: "hand/torque" of all joints, "device/tip" as
 // x, y, z. A plot's channel, "hand/torque.1", is a number.
 struct LiveChannel {
@@ -27,9 +35,8 @@ struct LiveChannel {
 
   // The unit; a list if a vector has several.
   nlohmann::json unit(const TraceChannels& channels) const;
-  // The channel's value in `row`; null for what is not finite. `values`: of all of `channels`.
-  nlohmann::json value(const TraceChannels& channels, std::span<const double> row,
-                       std::span<const double> values) const;
+  // The channel's value in `row`; null for what is not finite.
+  nlohmann::json value(const TraceChannels& channels, const LiveRow& row) const;
 };
 
 }  // namespace limpid

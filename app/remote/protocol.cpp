@@ -43,7 +43,9 @@ constexpr std::array kVerbs{
          "starts again, at rest in the middle or at the beginning of the hand's path"},
     Verb{"mark", kMark,
          "writes \"text\" as a mark into the plots and into the recording; answers with the tick"},
-    Verb{"row", kRow, "gives the newest row, with all channels or only those in \"channels\""},
+    Verb{"row", kRow,
+         "gives the newest row: those in \"channels\", or without them each number that plots have "
+         "of the first run"},
     Verb{"follow", kFollow,
          "sends rows of \"channels\" from now on, \"rate\" rows per second; an empty list of "
          "channels ends the sending"},

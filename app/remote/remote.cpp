@@ -238,7 +238,7 @@ json Remote::set(const Keys& keys, Client client) {
   const auto changed = [&] {
     Parameters p = host_.parameters(lane);
     if (reset) p = host_.usual();
-    set_values(p, keys, host_.highest());
+    set_values(p, keys, lane, host_.highest());
     return p;
   };
   changed();  // throws before anything changes
@@ -273,25 +273,23 @@ json Remote::newest(const Keys& keys) const {
   const TraceChannels& channels = host_.channels();
   const auto rows = host_.rows();
   if (rows.empty()) throw RemoteError("row: the loop has not run a tick yet");
-  std::vector<std::vector<double>> values;
-  for (std::size_t lane = 0; lane < rows.size(); ++lane) {
-    values.emplace_back(static_cast<std::size_t>(channels.count()));
-    channels.values(rows[lane], values.back(), lane);
-  }
+  std::vector<LiveRow> lanes;
+  for (std::size_t i = 0; i < rows.size(); ++i) lanes.emplace_back(channels, rows[i], i);
   json all = json::object();
   if (const auto names = keys.texts_if("channels", kMostSettings)) {
     const auto wanted = find(*names, "row");
     for (std::size_t i = 0; i < names->size(); ++i) {
       const std::size_t lane = wanted[i].lane;
-      if (lane >= rows.size()) {
+      if (lane >= lanes.size()) {
         throw RemoteError(fmt::format("row: channels: {}: there is no {}", shown((*names)[i]),
                                       lane == kTwinLane ? "twin" : "third run"));
       }
-      all[(*names)[i]] = wanted[i].channel.value(channels, rows[lane], values[lane]);
+      all[(*names)[i]] = wanted[i].channel.value(channels, lanes[lane]);
     }
   } else {
-    for (std::size_t i = 0; i < values[kMainLane].size(); ++i) {
-      all[channels.infos()[i].key] = number(values[kMainLane][i]);
+    const std::vector<double>& values = lanes[kMainLane].values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      all[channels.infos()[i].key] = number(values[i]);
     }
   }
   const double time = channels.layout().in(rows[kMainLane], Column::time)[0];
@@ -320,22 +318,20 @@ json Remote::follow(const Keys& keys, Client client) {
 }
 
 void Remote::row(LaneRows rows, std::uint64_t tick) {
-  bool worked_out = false;
   const TraceChannels& channels = host_.channels();
+  std::vector<std::optional<LiveRow>> lanes;  // worked out once somebody follows them
   for (auto& [client, f] : followers_) {
     if (tick % f.every != 0) continue;
-    if (!std::exchange(worked_out, true)) {
-      for (std::size_t i = 0; i < kMostLanes; ++i) {
-        values_[i].resize(static_cast<std::size_t>(channels.count()));
-        if (runs(rows, i)) channels.values(rows[i], values_[i], i);
-      }
+    for (std::size_t i = lanes.size(); i < kMostLanes; ++i) {
+      auto& lane = lanes.emplace_back();
+      if (runs(rows, i)) lane.emplace(channels, rows[i], i);
     }
     if (f.last && tick > *f.last) f.dropped += (tick - *f.last) / f.every - 1;
     f.last = tick;
     json each = json::array({tick});
     for (const Wanted& w : f.wanted) {
-      each.push_back(runs(rows, w.lane) ? w.channel.value(channels, rows[w.lane], values_[w.lane])
-                                        : json());
+      const auto& lane = lanes[w.lane];
+      each.push_back(lane ? w.channel.value(channels, *lane) : json());
     }
     f.rows.push_back(std::move(each));
     if (f.rows.size() >= kRowsInALine) flush(client, f);

@@ -3,7 +3,6 @@
 // common to both, and the rows that clients follow.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <functional>
 #include <map>
@@ -134,7 +133,6 @@ class Remote {
   std::vector<Pending> pending_;
   std::set<Client> here_, untold_;  // all clients; those not told of trouble_
   std::string trouble_;
-  std::array<std::vector<double>, kMostLanes> values_;
   LineServer server_;  // last, to be destroyed first
 };
 

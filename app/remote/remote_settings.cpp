@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "app/run/lane_settings.h"
+#include "core/base/lanes.h"
+
 namespace limpid {
 namespace {
 
@@ -70,14 +73,17 @@ void set_by_remote(Parameters& p, const std::string& key, const json& value,
       key, shown(value), most, info.unit));
 }
 
-void set_values(Parameters& p, const Keys& keys, const Parameters& highest) {
+void set_values(Parameters& p, const Keys& keys, std::size_t lane, const Parameters& highest) {
   const json& values = keys.of("values");
   if (!values.is_object() || values.size() > kMostSettings) {
     throw keys.error("values",
                      shown(values) + " is not allowed; allowed: a JSON object with settings");
   }
   Parameters all = p;
-  for (const auto& [key, value] : values.items()) set_by_remote(all, key, value, highest);
+  for (const auto& [key, value] : values.items()) {
+    if (lane != kMainLane) check_of_one_lane(key, "set it for the first run");
+    set_by_remote(all, key, value, highest);
+  }
   p = all;
 }
 

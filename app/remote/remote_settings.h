@@ -18,8 +18,9 @@ inline constexpr std::size_t kMostSettings = 200;  // that one request names
 // after which `p` is as it was: RemoteError, ParameterError.
 void set_by_remote(Parameters& p, const std::string& key, const nlohmann::json& value,
                    const Parameters& highest);
-// Sets all "values" of a request, which must be there. Errors: as set_by_remote().
-void set_values(Parameters& p, const Keys& keys, const Parameters& highest);
+// Sets all "values" of a request, which must be there, in the settings of a lane; a lane beside the
+// first has none that all lanes share. Errors: as set_by_remote().
+void set_values(Parameters& p, const Keys& keys, std::size_t lane, const Parameters& highest);
 
 // Settings in which limits left to the arm are numbers.
 Parameters with_limits_of(const ArmDescription& arm, Parameters p);

@@ -11,13 +11,12 @@
 #include "app/base/dated_file.h"
 #include "app/device/device_store.h"
 #include "app/remote/remote_settings.h"
-#include "app/run/lane_settings.h"
 #include "app/run/replay.h"
 
 namespace limpid {
 namespace {
 
-constexpr double kLeastTick = 1e-4;  // in a loop that a recording asks for [s]
+constexpr double kLeastTick = 1e-4;  // of a live loop, unless a person chooses the tick [s]
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -39,6 +38,13 @@ bool busy(const std::shared_ptr<std::future<T>>& work) {
 }
 
 }  // namespace
+
+std::string refused_tick(const RunPlan& plan, double chosen) {
+  const double tick = plan.parameters.tick;
+  if (tick >= kLeastTick || tick == chosen) return {};
+  return fmt::format("a tick of {} s is too short for the live loop; allowed: {} to 0.1", tick,
+                     kLeastTick);
+}
 
 ServedSession::ServedSession(World world, std::unique_ptr<Device> device,
                              const SafetyLimits& limits, Options options)
@@ -172,16 +178,16 @@ Answer ServedSession::open(const Keys& keys) {
   if (busy(opening_)) throw RemoteError("open: another file is being opened; try again");
   opening_ = std::make_shared<std::future<World>>(files_.run(
       [open = options_.open, asked, now = controls().parameters()] { return open(asked, now); }));
-  return Answer::Later([this, loading = opening_, waits, of_session = !asked.session.empty(),
+  return Answer::Later([this, loading = opening_, waits,
+                        key = asked.session.empty() ? "hand" : "session",
                         begun = false]() mutable -> std::optional<json> {
     // Whoever is told that a world is open finds its first row there.
     if (begun) return session_.ticked() ? std::optional(state()) : std::nullopt;
     if (!ready(*loading)) return std::nullopt;
     World world = loading->get();
-    if (const double tick = world.plan.parameters.tick; of_session && tick < kLeastTick) {
-      throw RemoteError(fmt::format(
-          "open: session: a tick of {} s is too short for the live loop; allowed: {} to 0.1", tick,
-          kLeastTick));
+    if (const std::string wrong = refused_tick(world.plan, controls().parameters().tick);
+        !wrong.empty()) {
+      throw RemoteError(fmt::format("open: {}: {}", key, wrong));
     }
     if (session_.recording()) {
       throw RemoteError("open: a recording has begun in the meantime; stop the recording first");
@@ -296,7 +302,7 @@ Answer ServedSession::twin(const Keys& keys) {
   }
   const bool runs = lane < controls().lane_count;
   Parameters p = runs ? controls().lanes[lane] : controls().parameters();
-  if (keys.has("values")) set_values(p, keys, with_limits_of(world_.plan.arm, highest_));
+  if (keys.has("values")) set_values(p, keys, lane, with_limits_of(world_.plan.arm, highest_));
   session_.set(lane, p);
   session_.run_lanes(std::max(controls().lane_count, lane + 1));
   return json{{"on", true}};

@@ -22,6 +22,10 @@ struct OpenRequest {
   std::string scene, arm, tip, session, hand;
 };
 
+// Returns why a recording's tick is refused; empty if it is not. A tick that takes the computer
+// from everything else is allowed only if a person has chosen it.
+std::string refused_tick(const RunPlan& plan, double chosen);
+
 class ServedSession {
  public:
   struct World {

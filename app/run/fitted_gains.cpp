@@ -62,6 +62,9 @@ double wanted_damping(const ArmDescription& arm, double tick) {
   return up(std::min(wanted, 2 * modes[0] / tick));
 }
 
+// Delay of a device's readings by its arm's file [s].
+double delay_of(const ArmDescription& arm) { return arm.delay.value_or(arm.assumed_delay); }
+
 bool same_springs(const Parameters& a, const Parameters& b) {
   return a.k_vc == b.k_vc && a.b_vc == b.b_vc && a.b_v == b.b_v;
 }
@@ -75,6 +78,7 @@ bool same(const Parameters& a, const Parameters& b, const char* key) {
 
 Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double delay,
                   const LinkSettings& link) {
+  delay = std::max(delay, arm.delay.value_or(0));
   Parameters p;
   const Eigen::VectorXd of_joints = device_damping(arm, p);
   double b_d = of_joints.minCoeff();
@@ -106,8 +110,14 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double de
 Parameters with_readings_of(const ArmDescription& arm, Parameters p) {
   p.encoder_step = arm.encoder_step;
   p.device_delay = p.delay =
-      static_cast<int>(std::min<long>(kMostDelay, std::lround(arm.assumed_delay / p.tick)));
+      static_cast<int>(std::min<long>(kMostDelay, std::lround(delay_of(arm) / p.tick)));
   return p;
+}
+
+Parameters fitted_with_readings(const ArmDescription& arm, const Parameters& chosen) {
+  Parameters p = fitted(arm, chosen, delay_of(arm));
+  p.tick = chosen.tick;  // the delay is in whole ticks
+  return with_readings_of(arm, p);
 }
 
 std::string readings_text(const ArmDescription& arm, const Parameters& p) {

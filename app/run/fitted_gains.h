@@ -22,13 +22,16 @@ inline constexpr std::array kFittedKeys{"coupling.k_vc",      "coupling.b_vc",  
 // Returns the paper's settings if they suit the arm: (3) holds with the values of its file, whose
 // damping is not far above what they need. Otherwise fits the keys above, at two digits, to the
 // chosen tick and to the chosen damping, if one is; (3) reckons with a delay t_d [s] and a link.
-// Gains that are chosen otherwise are those of all joints, so the fit does not weigh them.
+// Gains that are chosen otherwise are those of all joints, so the fit does not weigh them. The
+// delay of an arm that was identified counts in any case.
 Parameters fitted(const ArmDescription& arm, const Parameters& chosen = {}, double delay = 0,
                   const LinkSettings& link = {});
 
 // Returns `p` with what the arm's file says of the device's readings: step of the encoders, and
-// delay in whole ticks, which the law knows.
+// delay in whole ticks, identified or else assumed, which the law knows.
 Parameters with_readings_of(const ArmDescription& arm, Parameters p);
+// Returns fitted() for that delay, with these readings.
+Parameters fitted_with_readings(const ArmDescription& arm, const Parameters& chosen = {});
 // Says how settings differ from that: "its file says encoder steps of 0.419 mrad and a delay of 1
 // ms; the settings say exact encoders and no delay"; empty if they do not, or if the file says
 // nothing. For arms that slide the steps are in mm.

@@ -28,6 +28,12 @@ void share_world(std::span<Parameters> lanes) {
   }
 }
 
+void check_of_one_lane(std::string_view key, const std::string& instead) {
+  const ParameterInfo* info = find_parameter(key);
+  if (info == nullptr || of_controller(*info)) return;
+  throw ParameterError(fmt::format("{}: is one setting for all runs; {}", key, instead));
+}
+
 CouplingKind law_beside(std::span<const Parameters> lanes) {
   using enum CouplingKind;
   for (const CouplingKind kind : {standard, predictive, proposed}) {

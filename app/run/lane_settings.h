@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/tick/parameters.h"
@@ -11,6 +12,9 @@ namespace limpid {
 
 // Gives all settings of the first lane but its ControllerSettings to the other ones.
 void share_world(std::span<Parameters> lanes);
+// Refuses a setting that all lanes share, as one of a single lane. `instead`: how all of them get
+// it. Errors: ParameterError. It takes no notice of a key that does not exist.
+void check_of_one_lane(std::string_view key, const std::string& instead);
 // Returns the law that a further lane begins with, beside those that are there already: the first
 // of standard, predictive and proposed that none of them has.
 CouplingKind law_beside(std::span<const Parameters> lanes);

@@ -57,6 +57,7 @@ void RunWatch::hold(const Parameters& p) {
   tick_ = p.tick;
   limits_ = motor_limits(arm_, p);
   promised_ = std::max(promised_, promised(p));
+  by_port_ = info(p.kind).promise == Promise::port;
   at_fault_ = passivity(analyze(arm_, rest_pose(arm_), p, std::nullopt), p).passive == false;
   settings_ = std::string(info(p.kind).key);
   if (info(p.kind).takes_eta) settings_ += fmt::format(", eta {:.3g}", p.eta);
@@ -84,11 +85,17 @@ void RunWatch::add(std::span<const double> row) {
   const double energy =
       layout_.in(row, Column::energy_total)[0] - layout_.in(row, Column::energy_compensation)[0];
   if (!begun_at_) {
-    begun_at_ = energy;
+    begun_at_ = before_ = energy;
     shares_.begin(spring_energy(layout_, row));
   }
-  whole_ = std::max(whole_, energy - *begun_at_);
-  shares_.take(time, energy - *begun_at_, withheld_.add(layout_, row), limited);
+  if (by_port_) {
+    aside_ += energy - before_;
+    given_.take(time, layout_.in(row, Column::energy_port)[0], kGivenEnergy, settings_);
+  }
+  before_ = energy;
+  const double counted = energy - *begun_at_ - aside_;
+  whole_ = std::max(whole_, counted);
+  shares_.take(time, counted, withheld_.add(layout_, row), limited);
   energy_.take(time, at_fault_ ? shares_.without_limits() : shares_.own(), promised_ + kGivenEnergy,
                settings_);
   if (tip_speed_bound(row) <= kFastestTip) return;
@@ -132,6 +139,12 @@ std::vector<std::string> RunWatch::cautions() const {
     all.push_back(
         fmt::format("{}{}, above the limit since t = {:.3f} s: this run is not passive ({})", gave,
                     allowed, energy_.since, energy_.with));
+  }
+  if (given_.since >= 0) {
+    all.push_back(
+        fmt::format("the hand was given {}, above the limit since t = {:.3f} s: this run is not "
+                    "passive ({})",
+                    joules_text(given_.most), given_.since, given_.with));
   }
   if (speed_.since >= 0) {
     all.push_back(

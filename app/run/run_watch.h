@@ -70,8 +70,10 @@ class RunWatch {
   double promised_ = 0;             // largest E_c that the law allows [J]
   double whole_ = 0;                // largest E_c [J]
   bool at_fault_ = false;           // the law is known not to be passive
+  bool by_port_ = false;            // the law promises what the hand is given, not E_c
+  double before_ = 0, aside_ = 0;   // last E_c, and what it grew by under such laws [J]
   std::string settings_;            // in words
-  Excess energy_, speed_;
+  Excess energy_, given_, speed_;
 };
 
 // Returns a line for each lane whose motors were at their limit for so long [s].

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/run/analysis.h"
 #include "app/run/body_report.h"
 #include "app/run/tip_limits.h"
@@ -14,24 +16,20 @@ namespace {
 
 constexpr double kInside = 0.0005;  // less than this deep is touching [m]
 
-Vec3 tip_at_rest(const ArmDescription& description) {
+// Returns how deep the tip is in an object in the arm's rest pose, as its contact springs have it
+// when a run begins [m].
+double depth_in(const Object& object, const Scene& scene, const ArmDescription& description) {
+  Scene alone;
+  alone.tip_radius = scene.tip_radius;
+  alone.add(object);
+  alone.objects.back().body.reset();
   const Arm<kAnyDof> arm(description);
+  const Vec<kAnyDof> rest = rest_pose(description);
   Arm<kAnyDof>::Frames frames;
-  arm.frames(rest_pose(description), frames);
-  return arm.tip(frames);
-}
-
-// Returns how deep the tip is in an object [m]; 0 for a mesh, which may be open.
-double depth_of(const Vec3& tip, const Object& object, const Scene& scene) {
-  return std::visit(
-      [&]<class S>(const S& shape) {
-        if constexpr (std::is_same_v<S, Mesh> || std::is_same_v<S, JointStop>) {
-          return 0.0;
-        } else {
-          return scene.tip_radius - distance_to(shape, object.pose, tip).distance;
-        }
-      },
-      object.shape);
+  arm.frames(rest, frames);
+  Contacts<kAnyDof> contacts(description, alone);
+  contacts.place(arm, frames, rest);
+  return std::sqrt(2 * contacts.potential() / object.material.stiffness);
 }
 
 void warn_of_friction(const Object& object, std::vector<std::string>& warnings) {
@@ -44,14 +42,18 @@ void warn_of_friction(const Object& object, std::vector<std::string>& warnings) 
 }
 
 void warn_of_place(const Object& object, const Scene& scene, const ArmDescription& arm,
-                   const Vec3& tip, std::vector<std::string>& warnings) {
+                   std::vector<std::string>& warnings) {
   const double reach = farthest_tip(arm).distance;
   const double away = beyond_reach(object, scene, arm);
   if (away > 0) {
     warnings.push_back(fmt::format("'{}' lies {:.3g} m outside the tip's reach of {:.3g} m",
                                    object.name, away, reach));
   }
-  const double depth = depth_of(tip, object, scene);
+}
+
+void warn_of_depth(const Object& object, const Scene& scene, const ArmDescription& arm,
+                   std::vector<std::string>& warnings) {
+  const double depth = depth_in(object, scene, arm);
   if (depth > kInside) {
     warnings.push_back(
         fmt::format("'{}': in the arm's rest pose the tip is {:.3g} mm inside this object",
@@ -64,7 +66,6 @@ void warn_of_place(const Object& object, const Scene& scene, const ArmDescriptio
 std::vector<std::string> scene_flaws(const Scene& scene, const ArmDescription& arm,
                                      const Parameters& p) {
   std::vector<std::string> warnings;
-  const Vec3 tip = tip_at_rest(arm);
   const TipLimits limits = tip_limits(arm, rest_pose(arm), p, scene);
   const double stiffest = limits.wall(p.kind).stiffness;
   for (const Object& object : scene.objects) {
@@ -77,7 +78,8 @@ std::vector<std::string> scene_flaws(const Scene& scene, const ArmDescription& a
                       "(`limpid analyze`)",
                       object.name, object.material.stiffness, stiffest, name(p.kind)));
     }
-    if (!object.body) warn_of_place(object, scene, arm, tip, warnings);
+    if (!object.body) warn_of_place(object, scene, arm, warnings);
+    warn_of_depth(object, scene, arm, warnings);
   }
   return warnings;
 }

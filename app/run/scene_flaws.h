@@ -10,10 +10,9 @@
 
 namespace limpid {
 
-// Lists flaws of still objects, in sentences: things beyond the tip's reach, walls stiffer than the
-// law of `p` renders on this arm, kinetic friction above the static one, and the tip inside
-// something at the rest pose. Meshes have their triangles. For moving objects report_on_bodies()
-// does this.
+// Lists flaws of objects, in sentences: still things beyond the tip's reach (report_on_bodies() has
+// those that move), walls stiffer than the law of `p` renders on this arm, kinetic friction above
+// the static one, and the tip inside something at the rest pose. Meshes have their triangles.
 std::vector<std::string> scene_flaws(const Scene& scene, const ArmDescription& arm,
                                      const Parameters& p);
 

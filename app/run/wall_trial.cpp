@@ -137,7 +137,7 @@ class PhaseMeter {
   double ticks_ = 0, touched_ = 0, tremble2_ = 0, push_ = 0, depth_ = 0;
 };
 
-// What came of a wall in one press.
+// Outcome of one press on a wall.
 struct Pressed {
   bool reached = true;
   std::string fault = {};  // empty: none

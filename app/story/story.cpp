@@ -24,10 +24,7 @@ constexpr std::array<const char*, 4> kViews{"front", "top", "side", "iso"};
 constexpr Range kMetres{-10, 10, false, "m"};
 
 Camera::View view_in(const TomlTable& table, const char* key) {
-  const std::string word = table.need(table.text(key), key);
-  const auto at = std::ranges::find(kViews, word);
-  if (at == kViews.end()) table.refuse(key, fmt::format("{}", fmt::join(kViews, ", ")));
-  return static_cast<Camera::View>(at - kViews.begin());
+  return static_cast<Camera::View>(table.need(table.choice(key, kViews), key));
 }
 
 constexpr std::size_t kAll = kMostLanes;  // in place of a lane
@@ -49,12 +46,10 @@ std::vector<std::pair<std::string, std::uint32_t>> settings_in(const TomlTable& 
 }
 
 void check(const std::string& setting, std::size_t lane, double time) {
-  const ParameterInfo* info = find_parameter(key_of_setting(setting));
+  const std::string key = key_of_setting(setting);
+  const ParameterInfo* info = find_parameter(key);
   if (info == nullptr) return;  // apply_setting has a better message
-  if (lane != kAll && !of_controller(*info)) {
-    throw ParameterError(
-        fmt::format("{}: is one setting for all runs; write this setting under set", info->key));
-  }
+  if (lane != kAll) check_of_one_lane(key, "write this setting under set");
   if (!info->live && time > 0) {
     throw ParameterError(fmt::format("{}: may be set only in the first step", info->key));
   }

@@ -38,13 +38,6 @@ constexpr FieldInfo kOwnKeys[] = {
 
 constexpr const char* kScales[] = {"linear", "log"};
 
-std::size_t choice_in(const TomlTable& table, const char* key, std::span<const char* const> words) {
-  const std::string word = table.text(key).value_or(words.front());
-  const auto found = std::ranges::find(words, word);
-  if (found == words.end()) table.refuse(key, fmt::format("{}", fmt::join(words, ", ")));
-  return static_cast<std::size_t>(found - words.begin());
-}
-
 std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
 // Reads an axis of files: a case for each.
@@ -91,15 +84,17 @@ std::vector<const char*> words_of(const FieldInfo& info) {
 }
 
 void read_words(const TomlTable& table, SweepAxis& axis) {
-  const std::string allowed = fmt::format("a list of words from: {}", fmt::join(axis.words, ", "));
+  const auto allowed = [&](std::string_view word) {
+    return "a list of words from: " + allowed_for(word, axis.words);
+  };
   const toml::node* node = table.find("values");
   if (node == nullptr) table.refuse_missing("values");
-  if (!node->is_array()) table.refuse("values", allowed);
+  if (!node->is_array()) table.refuse("values", allowed(""));
   for (const toml::node& each : *node->as_array()) {
     const auto text = each.value_exact<std::string>();
     const std::string word = text ? *text : found_text(each);
     const auto found = std::ranges::find(axis.words, word);
-    if (found == axis.words.end()) table.refuse("values", allowed);
+    if (found == axis.words.end()) table.refuse("values", allowed(word));
     axis.values.push_back(static_cast<double>(found - axis.words.begin()));
   }
 }
@@ -144,8 +139,8 @@ void refuse_key(const TomlTable& table, const std::string& key) {
 
 void read_numbers(const TomlTable& table, ReadAxis& read) {
   SweepAxis& axis = read.axis;
-  axis.spread = static_cast<Spread>(choice_in(table, "sample", kSpreads));
-  axis.logarithmic = choice_in(table, "scale", kScales) == 1;
+  axis.spread = static_cast<Spread>(table.choice("sample", kSpreads).value_or(0));
+  axis.logarithmic = table.choice("scale", kScales) == 1;
   if (table.find("values") != nullptr) return read_list(table, axis);
   read.range = read_range(table, axis);
   if (axis.spread != Spread::grid) return;

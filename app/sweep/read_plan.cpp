@@ -243,7 +243,8 @@ class Reader {
     for (const std::string& line : plan_.figure.theory) {
       if (std::ranges::find(kTheories, line) == std::end(kTheories)) {
         figure->refuse("theory",
-                       fmt::format("a list of names from: {}", fmt::join(kTheories, ", ")));
+                       "a list of names from: " +
+                           allowed_for(line, {std::begin(kTheories), std::end(kTheories)}));
       }
     }
   }

@@ -11,6 +11,7 @@
 
 #include "app/sweep/measure_point.h"
 #include "devices/files/session/hdf5_reading.h"
+#include "devices/files/session/session.h"
 
 namespace limpid {
 
@@ -65,7 +66,6 @@ std::uint64_t diverged_points(const SweepTable& table);
 //   /repeat, /done points, uint32 and uint8
 // Root attributes: format kSweepFormat, version 1, title, plan (TOML), key (of the plan and the
 // files that it names), points, done, app_version, build. Errors: FileError.
-inline constexpr const char* kSweepFormat = "limpid-sweep";
 inline constexpr std::uint64_t kSweepVersion = 1;
 void write_table(const SweepPlan& plan, const SweepTable& table, const std::filesystem::path& file);
 // Writes the table as text: a header of names, a row for each point done.

@@ -36,4 +36,9 @@ inline bool write_all(int file, std::span<const unsigned char> bytes) {
   return true;
 }
 
+// Returns whether the error of a lock means no locks, as on some network file systems.
+inline bool has_no_locks(int code) {
+  return code == ENOLCK || code == EOPNOTSUPP || code == ENOSYS || code == EINVAL;
+}
+
 }  // namespace limpid

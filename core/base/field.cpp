@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "core/base/nearest_word.h"
+
 namespace limpid {
 namespace {
 
@@ -51,14 +53,12 @@ double allowed_number(const FieldInfo& info, const FieldValue& value) {
 }
 
 std::uint8_t allowed_word(const FieldInfo& info, const FieldValue& value) {
-  std::string allowed;
+  const auto* text = std::get_if<std::string>(&value);
+  const std::string_view word = text ? *text : std::string_view();
   for (std::size_t i = 0; i < info.words.size(); ++i) {
-    if (const auto* text = std::get_if<std::string>(&value); text && *text == info.words[i]) {
-      return static_cast<std::uint8_t>(i);
-    }
-    allowed += (i ? ", " : "") + std::string(info.words[i]);
+    if (word == info.words[i]) return static_cast<std::uint8_t>(i);
   }
-  refuse(info, value, allowed);
+  refuse(info, value, allowed_for(word, {info.words.begin(), info.words.end()}));
 }
 
 void refuse_kind(const FieldInfo& info, const FieldValue& value) {

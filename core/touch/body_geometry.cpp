@@ -10,6 +10,8 @@
 
 #include "core/touch/body_motion.h"
 #include "core/touch/collision_solid.h"
+#include "core/touch/free_space.h"
+#include "core/touch/kept_point.h"
 
 namespace limpid {
 namespace {
@@ -26,24 +28,6 @@ constexpr double kPasses = 0.25, kDeeper = 0.02, kMeets = 1e-6, kAtOnce = 1e-5;
 Vec3 middle(const btManifoldPoint& point) {
   return 0.5 *
          (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
-}
-
-// Pose of the large box below a plane: for faces and edges Bullet finds all its points at once.
-Pose block_below(const Plane& plane, const Pose& pose) {
-  Pose block = Pose::Identity();
-  block.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), plane.normal).matrix();
-  block.translation() = pose.translation() - CollisionSolid::kWide * plane.normal;
-  return block;
-}
-
-// Numbers of a point in write().
-constexpr std::size_t kNumbers = 31;
-
-void put(std::vector<double>& into, const btVector3& v) {
-  for (int i = 0; i < 3; ++i) into.push_back(v[i]);
-}
-void put(std::vector<double>& into, const Vec3& v) {
-  for (const double x : v) into.push_back(x);
 }
 
 }  // namespace
@@ -70,6 +54,7 @@ struct BodyGeometry::Inside {
   void add(const Scene& scene, std::size_t object, int body);
   void pair(Solid& a, Solid& b);
   static void keep_deepest(const Pair& pair);
+  static Vec3 out_of_b(const Pair& pair, const btManifoldPoint& point);
   static bool face_below(const Solid& model, const btVector3& corner, const btVector3& middle,
                          double within, btVector3& normal, btScalar& distance);
   void find_lowest(const Pair& pair, PairPoints& result);
@@ -96,6 +81,8 @@ struct BodyGeometry::Inside {
     double times;
   };
   void meet_on(const Way& way, Pair& pair, Solid& moving, Meeting& first);
+  static bool hides(const Pair& by, const Pair& pair, bool if_tied);
+  static void hide_seams(std::span<Pair> of_ball);
   void take(Pair& pair);
   static void share_lost(Pair& pair, std::span<BodyContact* const> contacts);
   BodyContact* fresh(const Pair& pair);
@@ -246,6 +233,11 @@ bool BodyGeometry::Inside::allowed(const Pair& pair) const {
     return (two[0] == pair.a->body && two[1] == pair.b->body) ||
            (two[1] == pair.a->body && two[0] == pair.b->body);
   });
+}
+
+// Normal of a point. Bullet may have swapped the pair.
+Vec3 BodyGeometry::Inside::out_of_b(const Pair& p, const btManifoldPoint& point) {
+  return (p.manifold->getBody0() == &p.a->at ? 1.0 : -1.0) * from_bullet(point.m_normalWorldOnB);
 }
 
 // Keeps only the deepest point of a ball: older ones that Bullet keeps beside it would turn the
@@ -589,6 +581,45 @@ void BodyGeometry::Inside::share_lost(Pair& p, std::span<BodyContact* const> con
   for (BodyContact* c : contacts) c->lost = lost * not_pressed(*c) / deep;
 }
 
+// Whether the surface that a ball is deeper in reaches above the point where the ball meets another
+// solid: there the other solid's edge is no edge. Round solids bend away from the point. `if_tied`:
+// the answer where both are as deep.
+bool BodyGeometry::Inside::hides(const Pair& by, const Pair& p, bool if_tied) {
+  if (by.points != 1 || !by.single || !p.single || by.b->round || by.b->body != p.b->body) {
+    return false;
+  }
+  const btManifoldPoint &over = by.manifold->getContactPoint(0),
+                        &point = p.manifold->getContactPoint(0);
+  const double deeper = point.getDistance() - over.getDistance();
+  if (deeper < 0 || (deeper == 0 && !if_tied)) return false;
+  // Both points lie on lines through the ball's centre.
+  const double radius = by.a->radius;
+  const double height = radius + over.getDistance() -
+                        (radius + point.getDistance()) * out_of_b(by, over).dot(out_of_b(p, point));
+  return height <= kMeeting;
+}
+
+// Takes away the points of a ball that are hidden, so that it rolls over the seam of level surfaces
+// as on one. The point that stays goes on with the state of the one that goes.
+void BodyGeometry::Inside::hide_seams(std::span<Pair> of_ball) {
+  for (Pair& p : of_ball) {
+    if (p.points != 1) continue;
+    const auto by = std::ranges::find_if(
+        of_ball, [&](const Pair& other) { return &other != &p && hides(other, p, &other < &p); });
+    if (by == of_ball.end()) continue;
+    void*& state = by->manifold->getContactPoint(0).m_userPersistentData;
+    auto* c = static_cast<BodyContact*>(p.manifold->getContactPoint(0).m_userPersistentData);
+    by->lost += std::exchange(p.lost, 0) + (c != nullptr && state != nullptr ? c->lost : 0);
+    if (c != nullptr && state == nullptr) {
+      c->object_b = by->b->object;
+      c->round_b = nullptr;
+      state = c;
+    }
+    p.manifold->clearManifold();
+    p.points = 0;
+  }
+}
+
 void BodyGeometry::Inside::take(Pair& p) {
   for (int i = 0; i < p.points; ++i) {
     btManifoldPoint& point = p.manifold->getContactPoint(i);
@@ -601,9 +632,7 @@ void BodyGeometry::Inside::take(Pair& p) {
       }
       point.m_userPersistentData = c;
     }
-    // Bullet may have swapped the pair.
-    const bool turned = p.manifold->getBody0() != &p.a->at;
-    c->normal = (turned ? -1.0 : 1.0) * from_bullet(point.m_normalWorldOnB);
+    c->normal = out_of_b(p, point);
     c->point = middle(point);
     c->depth = -point.getDistance();
     follow(p, *c);
@@ -634,9 +663,13 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake, std::span<const P
   const auto moves = [&](const Inside::Solid& s) {
     return s.body != BodyContact::kStill && awake[static_cast<std::size_t>(s.body)] != 0;
   };
-  for (Inside::Pair& p : in.pairs) {
-    const bool anew = moves(*p.a) || moves(*p.b);
-    if (anew) {
+  const auto anew = [&](const Inside::Pair& p) { return moves(*p.a) || moves(*p.b); };
+  for (auto from = in.pairs.begin(); from != in.pairs.end();) {
+    const auto to =
+        std::find_if(from, in.pairs.end(), [&](const Inside::Pair& p) { return p.a != from->a; });
+    const std::span<Inside::Pair> of_one(from, to);
+    for (Inside::Pair& p : of_one) {
+      if (!anew(p)) continue;
       if (p.a->overlaps(*p.b)) {
         in.meet(p);
       } else if (p.points > 0) {
@@ -644,17 +677,20 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake, std::span<const P
         p.points = 0;
       }
     }
-    if (p.points == 0) {
-      p.lost = 0;
-      continue;
+    if (from->a->ball()) Inside::hide_seams(of_one);
+    for (Inside::Pair& p : of_one) {
+      if (p.points == 0) {
+        p.lost = 0;
+        continue;
+      }
+      const std::size_t before = in.points.size();
+      in.take(p);
+      if (anew(p)) in.share_lost(p, std::span(in.points).subspan(before));
     }
-    const std::size_t before = in.points.size();
-    in.take(p);
-    if (anew) in.share_lost(p, std::span(in.points).subspan(before));
+    from = to;
   }
   for (BodyContact* c : in.last) {
-    if (c->seen) continue;
-    in.free_ones.push_back(c);
+    if (!c->seen) in.free_ones.push_back(c);
   }
   in.next = {};
 }
@@ -734,54 +770,27 @@ void BodyGeometry::write(std::vector<double>& into) const {
       const auto* c = static_cast<const BodyContact*>(point.m_userPersistentData);
       if (c == nullptr) continue;
       into.push_back(static_cast<double>(k));
-      put(into, point.m_localPointA);
-      put(into, point.m_localPointB);
-      put(into, point.m_normalWorldOnB);
-      put(into, point.m_positionWorldOnA);
-      put(into, point.m_positionWorldOnB);
-      into.push_back(point.m_distance1);
-      into.push_back(point.m_lifeTime);
-      into.push_back(m.getBody0() != &pairs[k].a->at ? 1 : 0);
-      into.push_back(c->rest);
-      into.push_back(c->force);
-      put(into, c->friction);
-      put(into, c->anchor);
-      into.push_back(c->slipping ? 1 : 0);
-      into.push_back(c->lost);
-      into.push_back(c->pressed);
-      into.push_back(c->impact.number());
+      KeptPoint::write(point, m.getBody0() != &pairs[k].a->at, *c, into);
     }
   }
 }
 
 std::span<const double> BodyGeometry::read(std::span<const double> from) {
+  constexpr std::size_t kNumbers = 1 + KeptPoint::kNumbers;
   forget();
-  const auto vector = [](std::span<const double> at) { return btVector3(at[0], at[1], at[2]); };
   for (; from.size() >= kNumbers; from = from.subspan(kNumbers)) {
     const double pair = from[0];
     if (!(pair >= 0 && pair < static_cast<double>(in_->pairs.size()))) break;
     Inside::Pair& p = in_->pairs[static_cast<std::size_t>(pair)];
     if (p.manifold->getNumContacts() == kPointsOfPair) break;
-    btManifoldPoint point(vector(from.subspan(1)), vector(from.subspan(4)), vector(from.subspan(7)),
-                          from[16]);
-    point.m_positionWorldOnA = vector(from.subspan(10));
-    point.m_positionWorldOnB = vector(from.subspan(13));
-    point.m_lifeTime = static_cast<int>(from[17]);
-    const bool turned = from[18] != 0;
-    p.manifold->setBodies(turned ? &p.b->at : &p.a->at, turned ? &p.a->at : &p.b->at);
-    const int at = p.manifold->addManifoldPoint(point);
+    const KeptPoint kept(from.subspan(1));
+    p.manifold->setBodies(kept.turned ? &p.b->at : &p.a->at, kept.turned ? &p.a->at : &p.b->at);
+    const int at = p.manifold->addManifoldPoint(kept.point);
     p.points = p.manifold->getNumContacts();
     BodyContact* c = in_->fresh(p);
     if (c == nullptr) break;
-    c->point = middle(point);
-    c->rest = from[19];
-    c->force = from[20];
-    c->friction = Vec3(from[21], from[22], from[23]);
-    c->anchor = Vec3(from[24], from[25], from[26]);
-    c->slipping = from[27] != 0;
-    c->lost = from[28];
-    c->pressed = from[29];
-    c->impact.read(from[30]);
+    c->point = middle(kept.point);
+    KeptPoint::read(from.subspan(1), *c);
     p.manifold->getContactPoint(at).m_userPersistentData = c;
     in_->points.push_back(c);
   }

@@ -171,6 +171,13 @@ bool CollisionSolid::meets_faces_of(const CollisionSolid& flat) const {
   return flat.rolls() && flat.shape->getShapeType() == CYLINDER_SHAPE_PROXYTYPE;
 }
 
+Pose block_below(const Plane& plane, const Pose& pose) {
+  Pose block = Pose::Identity();
+  block.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), plane.normal).matrix();
+  block.translation() = pose.translation() - CollisionSolid::kWide * plane.normal;
+  return block;
+}
+
 std::unique_ptr<CollisionSolid> collision_solid(const Shape& shape, const Pose& in_object,
                                                 int object, int body) {
   auto solid = std::make_unique<CollisionSolid>();
@@ -180,6 +187,7 @@ std::unique_ptr<CollisionSolid> collision_solid(const Shape& shape, const Pose& 
   if (const auto* box = std::get_if<Box>(&shape)) {
     solid->shape = std::make_unique<btBoxShape>(to_bullet(Vec3(box->size / 2)));
     solid->least = box->size.minCoeff();
+    solid->shape->setMargin(std::min(kMargin, 0.05 * solid->least));
     solid->corners = corners_of(*box);
     solid->faces = faces_of_box(box->size / 2);
   } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {

@@ -56,6 +56,10 @@ struct CollisionSolid {
   bool meets_faces_of(const CollisionSolid& flat) const;
 };
 
+// Returns the pose of the large box below a plane: for its faces and edges Bullet finds all points
+// at once.
+Pose block_below(const Plane& plane, const Pose& pose);
+
 // Makes a solid of a shape; null: the shape has no place in space.
 std::unique_ptr<CollisionSolid> collision_solid(const Shape& shape, const Pose& in_object,
                                                 int object, int body);

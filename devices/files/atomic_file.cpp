@@ -58,14 +58,15 @@ constexpr std::size_t kLongest = 1 << 20;              // of a file [bytes]
 constexpr auto kPatience = std::chrono::seconds(2);    // others hold it for milliseconds
 constexpr auto kPause = std::chrono::milliseconds(5);  // between two tries
 
-// A lock that keeps out others, also threads of this program, while it lives.
+// A lock that keeps out others, also threads of this program, while it lives. A file system without
+// locks keeps nobody out.
 class Lock {
  public:
   explicit Lock(const fs::path& file)
       : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666)) {
     if (descriptor_ < 0) fail(file, std::strerror(errno));
     const auto end = SteadyClock::now() + kPatience;
-    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && !has_no_locks(errno)) {
       if (errno == EWOULDBLOCK && SteadyClock::now() < end) {
         std::this_thread::sleep_for(kPause);
       } else if (errno != EINTR) {

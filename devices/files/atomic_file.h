@@ -68,9 +68,10 @@ std::string try_write_atomically(const std::filesystem::path& file, std::string_
 
 // Changes a file that several programs change, each its own part. Hands `change` its present text,
 // empty if there is no file, and writes what `change` returns. FILE.lock, which stays, is locked
-// meanwhile: others that use this function wait. Makes the folder if needed. Errors: FileError if
-// it cannot be read or written, or if another program holds the lock for more than two seconds.
-// After these, and if `change` throws, the file is as it was.
+// meanwhile: others that use this function wait. Where the file system has no locks, nobody waits.
+// Makes the folder if needed. Errors: FileError if it cannot be read or written, or if another
+// program holds the lock for more than two seconds. After these, and if `change` throws, the file
+// is as it was.
 void update_file_under_lock(const std::filesystem::path& file,
                             const std::function<std::string(const std::string& text)>& change);
 

@@ -39,9 +39,7 @@ void read_field(const TomlTable& t, const Field<Owner>& field, Owner& owner, boo
     } else if constexpr (std::is_same_v<T, std::string>) {
       x = *t.text(key);
     } else if constexpr (std::is_same_v<T, const Choice<Owner>>) {
-      const auto word = std::ranges::find(field.words, *t.text(key));
-      if (word == field.words.end()) t.refuse(key, fmt::format("{}", fmt::join(field.words, ", ")));
-      x.set(owner, static_cast<std::uint8_t>(word - field.words.begin()));
+      x.set(owner, static_cast<std::uint8_t>(*t.choice(key, field.words)));
     } else {
       x = *t.vector(key, field);
     }

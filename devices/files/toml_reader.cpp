@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "devices/files/text_file.h"
 
@@ -43,22 +42,6 @@ std::optional<std::vector<double>> list_in(const toml::node& node, std::size_t c
   return all;
 }
 
-// Edit distance: the fewest letters to insert, drop or change.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
 
 toml::table parse_toml(std::string_view text, const std::string& where) {
@@ -84,20 +67,6 @@ std::string found_text(const toml::node& node) {
     return "[" + all + "]";
   }
   return node.is_table() ? "a table" : "a date or time";
-}
-
-std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& among) {
-  std::optional<std::string> best;
-  std::size_t fewest = 1 + std::max<std::size_t>(2, word.size() / 3);
-  if (word.size() > 200) return best;
-  for (const std::string& candidate : among) {
-    const std::size_t steps = distance(word, candidate);
-    if (steps < fewest) {
-      fewest = steps;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 std::string TomlTable::full(std::string_view key) const {
@@ -145,6 +114,15 @@ std::optional<std::string> TomlTable::text(const char* key) const {
   if (node == nullptr) return std::nullopt;
   if (!node->is_string()) refuse(key, "text in quotes");
   return *node->value<std::string>();
+}
+
+std::optional<std::size_t> TomlTable::choice(const char* key,
+                                             std::span<const char* const> words) const {
+  const auto word = text(key);
+  if (!word) return std::nullopt;
+  const auto found = std::ranges::find(words, *word);
+  if (found == words.end()) refuse(key, allowed_for(*word, {words.begin(), words.end()}));
+  return static_cast<std::size_t>(found - words.begin());
 }
 
 std::optional<double> TomlTable::number(const char* key, const Range& range) const {

@@ -8,11 +8,13 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/base/field.h"
+#include "core/base/nearest_word.h"  // nearest(), for readers
 
 namespace limpid {
 
@@ -21,9 +23,6 @@ toml::table parse_toml(std::string_view text, const std::string& where);
 
 // The value of a node as it stands in the file, shortened for messages.
 std::string found_text(const toml::node& node);
-
-// The candidate nearest to `word` in spelling, or nothing if none resembles it.
-std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& among);
 
 // A table of a TOML file. Every reader returns nothing if the key is missing, and throws
 // FileError if its value is not allowed. need() refuses a missing key, too.
@@ -41,6 +40,8 @@ class TomlTable {
                      const std::function<bool(std::string_view, const toml::node&)>& stray,
                      const std::string& allowed) const;
   std::optional<std::string> text(const char* key) const;
+  // The place of one of these words.
+  std::optional<std::size_t> choice(const char* key, std::span<const char* const> words) const;
   std::optional<double> number(const char* key, const Range& range) const;
   std::optional<std::uint64_t> count(const char* key, std::uint64_t least,
                                      std::uint64_t most) const;

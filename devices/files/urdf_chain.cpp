@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kLeastRange = 1e-3;   // of a joint [rad]; of a slide 0.1 mm
 constexpr double kLeastMotion = 1e-6;  // of the tip a radian of a joint [m]
+constexpr double kHeaviest = 1e6;      // link [kg]
 constexpr int kPoses = 8;              // number of poses in which the tip is checked
 
 void warn_of_joint(const Joint& joint, UrdfPlaces& places) {
@@ -205,13 +206,15 @@ class Chain {
 
   void add_inertial(const urdf::Link& link, const Pose& here) {
     const urdf::Inertial& body = *link.inertial;
-    for (const double x :
-         {body.mass, body.ixx, body.ixy, body.ixz, body.iyy, body.iyz, body.izz,
-          body.origin.position.x, body.origin.position.y, body.origin.position.z}) {
+    for (const double x : {body.ixx, body.ixy, body.ixz, body.iyy, body.iyz, body.izz}) {
       if (!std::isfinite(x)) places_.refuse_link(link.name, "inertial: a number is not finite");
     }
-    if (body.mass < 0) {
-      places_.refuse_link(link.name, fmt::format("mass {} kg; needed: 0 or more", body.mass));
+    if (const std::string why = refused_origin(vector(body.origin.position)); !why.empty()) {
+      places_.refuse_link(link.name, "inertial: " + why);
+    }
+    if (!(body.mass >= 0 && body.mass <= kHeaviest)) {
+      places_.refuse_link(link.name,
+                          fmt::format("mass {} kg; allowed: 0 to {} kg", body.mass, kHeaviest));
     }
     if (moving() < 0) return;
     Link own;
@@ -223,7 +226,11 @@ class Chain {
   }
 
   Pose origin_of(const urdf::Joint& joint, const Pose& here) const {
-    const Pose origin = here * pose(joint.parent_to_joint_origin_transform);
+    const urdf::Pose& given = joint.parent_to_joint_origin_transform;
+    if (const std::string why = refused_origin(vector(given.position)); !why.empty()) {
+      places_.refuse_joint(joint.name, why);
+    }
+    const Pose origin = here * pose(given);
     if (!origin.matrix().allFinite()) {
       places_.refuse_joint(joint.name, "origin: a number is not finite");
     }

@@ -142,6 +142,7 @@ std::string list(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+constexpr double kFarthest = 1e6;          // of an origin, along each axis [m]
 constexpr double kMostGravity = 30;        // [m/s^2]
 constexpr double kStiffest = 1e4;          // [N m/rad]
 constexpr double kLongestDelay = 1;        // [s]
@@ -165,7 +166,7 @@ class Own {
     if (text == nullptr) return std::nullopt;
     const auto found = numbers_in<1>(text);
     if (!found || !((*found)[0] >= least && (*found)[0] <= most)) {
-      refuse(fmt::format("{} \"{}\"; allowed: {} to {} {}", name, text, least, most, unit));
+      refuse(fmt::format("{} \"{}\"; allowed: {:.6g} to {:.6g} {}", name, text, least, most, unit));
     }
     return (*found)[0];
   }
@@ -233,6 +234,12 @@ void read_spring(const TiXmlElement& element, const UrdfPlaces& places, ArmDescr
 }
 
 }  // namespace
+
+std::string refused_origin(const Vec3& xyz) {
+  if ((xyz.array().abs() <= kFarthest).all()) return {};
+  return fmt::format("origin xyz \"{} {} {}\"; allowed: {} to {} m along each axis", xyz.x(),
+                     xyz.y(), xyz.z(), -kFarthest, kFarthest);
+}
 
 void UrdfPlaces::refuse(const std::string& why) const {
   throw FileError(fmt::format("{}: {}", where, why));

@@ -44,6 +44,9 @@ std::optional<Numbers<N>> numbers_in(const char* text) {
   return at == end ? std::optional(out) : std::nullopt;
 }
 
+// Returns why the lengths of an <origin> are refused; empty if they are not.
+std::string refused_origin(const Vec3& xyz);
+
 // Lines of joints and links in a URDF, and what is wrong there.
 struct UrdfPlaces {
   std::string where;

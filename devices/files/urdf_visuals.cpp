@@ -86,8 +86,12 @@ Pose origin_of(const TiXmlElement& visual) {
   Pose pose = Pose::Identity();
   const TiXmlElement* origin = visual.FirstChildElement("origin");
   if (origin == nullptr) return pose;
-  if (const char* xyz = origin->Attribute("xyz"))
+  if (const char* xyz = origin->Attribute("xyz")) {
     pose.translation() = numbers<3>(xyz, "origin xyz");
+    if (const std::string why = refused_origin(pose.translation()); !why.empty()) {
+      throw NotShown{why};
+    }
+  }
   if (const char* rpy = origin->Attribute("rpy")) {
     pose.linear() = rotation(numbers<3>(rpy, "origin rpy"));
   }

@@ -73,6 +73,16 @@ int open_file(const fs::path& path) {
                              path.string(), why));
 }
 
+// Takes the lock of an open file. Returns false if another program has it. Errors: HidError.
+bool take_lock(int file, const fs::path& path) {
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) return true;
+  if (errno == EWOULDBLOCK || errno == EINTR) return false;
+  throw HidError(
+      fmt::format("{}: cannot be locked: {}, so nobody can tell whether another program uses the "
+                  "device",
+                  path.string(), std::strerror(errno)));
+}
+
 // Returns whether `path` still is this file: a lock on a removed file would hold nobody back.
 bool still_there(int file, const fs::path& path) {
   struct stat is {
@@ -149,19 +159,18 @@ fs::path claim_folder() {
   return claim_folder(kPlaces);
 }
 
-DeviceClaim::DeviceClaim(const std::string& key, const fs::path& folder) {
+DeviceClaim::DeviceClaim(const std::string& key, const fs::path& folder) : DeviceClaim() {
   const fs::path path = folder / file_name(key);
   for (int i = 0; i < kClaimTries; ++i) {
     if (i > 0) std::this_thread::sleep_for(kPause);
-    const int file = open_file(path);
-    if (flock(file, LOCK_EX | LOCK_NB) == 0 && still_there(file, path)) {
-      file_ = file;
-      write_owner(file);
+    release();
+    file_ = open_file(path);
+    if (take_lock(file_, path) && still_there(file_, path)) {
+      write_owner(file_);
       return;
     }
-    const Owner owner = read_owner(file);
-    close(file);
-    if (i + 1 == kClaimTries) throw HidError("in use by " + owner.text);
+    const Owner owner = read_owner(file_);
+    if (i + 1 == kClaimTries) throw ClaimTaken("in use by " + owner.text);
   }
 }
 
@@ -171,9 +180,9 @@ DeviceClaim DeviceClaim::on_node(const fs::path& node) {
   if (claim.file_ < 0) throw HidError(fmt::format("{}: {}", node.string(), std::strerror(errno)));
   for (int i = 0; i < kClaimTries; ++i) {
     if (i > 0) std::this_thread::sleep_for(kPause);
-    if (flock(claim.file_, LOCK_EX | LOCK_NB) == 0) return claim;
+    if (take_lock(claim.file_, node)) return claim;
   }
-  throw HidError(
+  throw ClaimTaken(
       fmt::format("{}: in use by another program, perhaps in a container", node.string()));
 }
 

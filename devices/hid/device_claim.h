@@ -13,7 +13,14 @@
 #include <span>
 #include <string>
 
+#include "devices/hid/hid_transport.h"
+
 namespace limpid {
+
+// Thrown if another program has a claim; what() says which.
+struct ClaimTaken : HidError {
+  using HidError::HidError;
+};
 
 // Returns the first of some folders in which every user may make files. Throws HidError if there is
 // none.
@@ -23,12 +30,12 @@ std::filesystem::path claim_folder(std::span<const std::filesystem::path> among)
 class DeviceClaim {
  public:
   DeviceClaim() = default;  // of no device
-  // `key` names the physical device, not its entry in a list. Throws HidError that says who has the
-  // device, or why nobody can tell.
+  // `key` names the physical device, not its entry in a list. Throws ClaimTaken if another program
+  // has the device, or HidError that says why nobody can tell.
   explicit DeviceClaim(const std::string& key,
                        const std::filesystem::path& folder = claim_folder());
-  // Claims the device's node itself, by whatever name it is known. Throws HidError if another
-  // program has it, or it cannot be opened.
+  // Claims the device's node itself, by whatever name it is known. Throws ClaimTaken if another
+  // program has it, or HidError if it cannot be opened or locked.
   static DeviceClaim on_node(const std::filesystem::path& node);
   DeviceClaim(DeviceClaim&& other) noexcept;
   DeviceClaim& operator=(DeviceClaim&& other) noexcept;

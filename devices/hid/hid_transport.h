@@ -16,7 +16,6 @@ struct HidError : std::runtime_error {
 
 // A report, which begins with the byte of its id: 0 if the device numbers none. Sizes count that
 // byte.
-// count that byte.
 using Report = std::vector<std::uint8_t>;
 
 // A descriptor, and bytes that a process with nothing else can write there to stop a device. The

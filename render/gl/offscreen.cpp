@@ -6,14 +6,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <span>
 #include <stdexcept>
 
+#include "core/base/png_chunk.h"
 #include "render/gl/gl_names.h"
 
 namespace limpid {
@@ -47,33 +46,6 @@ struct Frame {
     glViewport(0, 0, width, height);
   }
 };
-
-void put_big_endian(std::vector<unsigned char>& into, std::uint32_t value) {
-  for (const int shift : {24, 16, 8, 0}) into.push_back(static_cast<unsigned char>(value >> shift));
-}
-
-// Checksum as in the PNG specification, annex D.
-std::uint32_t crc(std::span<const unsigned char> bytes) {
-  std::uint32_t sum = 0xffffffffu;
-  for (const unsigned char byte : bytes) {
-    sum ^= byte;
-    for (int i = 0; i < 8; ++i) sum = (sum & 1) != 0 ? 0xedb88320u ^ (sum >> 1) : sum >> 1;
-  }
-  return ~sum;
-}
-
-// The chunk pHYs: pixels per metre, as many across as down.
-std::vector<unsigned char> density_chunk(std::uint32_t per_metre) {
-  std::vector<unsigned char> body{'p', 'H', 'Y', 's'};
-  put_big_endian(body, per_metre);
-  put_big_endian(body, per_metre);
-  body.push_back(1);
-  std::vector<unsigned char> chunk;
-  put_big_endian(chunk, static_cast<std::uint32_t>(body.size() - 4));
-  chunk.insert(chunk.end(), body.begin(), body.end());
-  put_big_endian(chunk, crc(body));
-  return chunk;
-}
 
 }  // namespace
 
@@ -165,7 +137,7 @@ std::vector<unsigned char> drawn_rgba(int width, int height, const std::function
 }
 
 std::vector<unsigned char> png_of(int width, int height, const std::vector<unsigned char>& rgba,
-                                  unsigned per_metre) {
+                                  unsigned per_metre, const std::string& about) {
   if (width < 1 || height < 1 ||
       rgba.size() != 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
     throw std::invalid_argument("the size of a picture does not match the number of its pixels");
@@ -177,10 +149,9 @@ std::vector<unsigned char> png_of(int width, int height, const std::vector<unsig
   };
   if (stbi_write_png_to_func(append, &png, width, height, 4, rgba.data(), 4 * width) == 0)
     throw std::runtime_error("the picture cannot be written");
-  if (per_metre == 0) return png;
-  constexpr std::ptrdiff_t kBehindHeader = 8 + 25;  // the signature and IHDR
-  const std::vector<unsigned char> density = density_chunk(per_metre);
-  png.insert(png.begin() + kBehindHeader, density.begin(), density.end());
+  std::string chunks = per_metre == 0 ? "" : png_density(per_metre);
+  if (!about.empty()) chunks += png_description(about);
+  png.insert(png.begin() + kPngHeader, chunks.begin(), chunks.end());
   return png;
 }
 

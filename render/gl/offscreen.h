@@ -37,10 +37,11 @@ std::vector<unsigned char> read_rgba(int width, int height);
 // framebuffer and viewport stay as they were. Throws std::runtime_error if OpenGL refuses the size.
 std::vector<unsigned char> drawn_rgba(int width, int height, const std::function<void()>& draw);
 
-// Encodes such pixels as a PNG file, with `per_metre` pixels a metre for printing unless that is 0.
-// Errors: std::invalid_argument when the sizes do not agree, std::runtime_error.
+// Encodes such pixels as a PNG file, with `per_metre` pixels a metre for printing unless that is 0,
+// and a description unless that is empty. Errors: std::invalid_argument when the sizes do not
+// agree, std::runtime_error.
 std::vector<unsigned char> png_of(int width, int height, const std::vector<unsigned char>& rgba,
-                                  unsigned per_metre = 0);
+                                  unsigned per_metre = 0, const std::string& about = "");
 
 // Writes such pixels to a PNG file. Throws std::runtime_error naming the file when it cannot be
 // written, std::invalid_argument when the sizes do not agree.

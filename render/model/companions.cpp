@@ -1,6 +1,7 @@
 #include "render/model/companions.h"
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <stdexcept>
 
@@ -35,6 +36,22 @@ std::vector<unsigned char> read_bytes(const fs::path& path, std::size_t most) {
   return bytes;
 }
 
+std::string decoded_uri(const std::string& uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned char code = 0;
+    const char* const digits = uri.data() + i + 1;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2) {
+      out += static_cast<char>(code);
+      i += 2;
+    } else {
+      out += uri[i];
+    }
+  }
+  return out;
+}
+
 fs::path Companions::resolve(const std::string& uri) const {
   const std::string what = "refers to \"" + uri + "\"";
   const fs::path relative(uri);
@@ -54,8 +71,9 @@ fs::path Companions::resolve(const std::string& uri) const {
 }
 
 std::optional<std::vector<unsigned char>> Companions::read(const std::string& uri) {
-  const fs::path file = resolve(uri);
+  fs::path file = resolve(uri);
   std::error_code error;
+  if (!fs::exists(file, error)) file = resolve(decoded_uri(uri));
   if (!fs::exists(file, error)) return std::nullopt;
   auto bytes = read_bytes(file, left_);
   left_ -= bytes.size();

@@ -20,6 +20,9 @@ std::string one_line(std::string text);
 // Throws std::runtime_error: the name, and why in one line.
 [[noreturn]] void refuse(const std::string& name, const std::string& why);
 
+// Decodes the characters that a URI encodes, as %20. Other percent signs stay.
+std::string decoded_uri(const std::string& uri);
+
 class Companions {
  public:
   // `name` stands for the model in messages and must outlive this; the model's own `size` counts,
@@ -28,6 +31,7 @@ class Companions {
       : name_(name), folder_(std::move(folder)), left_(kLargestModelFiles - size) {}
 
   bool none() const { return folder_.empty(); }
+  // Takes the file of exactly that name, else of the name that the URI encodes, as my%20file.
   // Returns nothing for a file that does not exist. Throws std::runtime_error naming the model for
   // one that lies elsewhere, cannot be read, or makes all of them too large.
   std::optional<std::vector<unsigned char>> read(const std::string& uri);

@@ -26,11 +26,20 @@ void put(Bytes& out, std::size_t number) {
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
+// Signs in a URI that tinygltf decodes; it takes a plus for a blank.
+constexpr const char* kDecodable = "%+";
+
+bool names_decodable(const std::string& uri) {
+  return !tinygltf::IsDataURI(uri) && uri.find_first_of(kDecodable) != uri.npos;
+}
+
 constexpr int kDeepest = 64;
 constexpr std::size_t kMostValues = 8'000'000;
 constexpr std::size_t kMostObjects = 1'000'000;  // each may become a struct of two kilobytes
 
-// Checks values as the parser reaches them; returning false ends the reading.
+// Checks JSON before memory is spent on it, value by value as the parser reaches them. Throws
+// std::runtime_error naming the file for text that is no JSON object, nests deeper than 64, has
+// more than 8 million values or 1 million objects, or is glTF 1.
 class Guard {
  public:
   explicit Guard(const std::string& name) : name_(name) {}
@@ -40,11 +49,17 @@ class Guard {
   bool number_integer(std::int64_t) { return count(); }
   bool number_unsigned(std::uint64_t) { return count(); }
   bool number_float(double, const std::string&) { return count(); }
+  // Number of buffers that stand for the binary chunk (each would be a copy of it).
   std::size_t embedded() const { return embedded_; }
+  // Whether a URI has signs that tinygltf would decode.
+  bool decodable() const { return decodable_; }
 
   bool string(std::string& text) {
     if (depth_ == 2 && in_asset_ && at_version_ && text.starts_with("1")) refuse_old();
-    if (depth_ == 3 && at_uri_) has_uri_ = !text.empty();
+    if (depth_ == 3 && at_uri_) {
+      has_uri_ = !text.empty();
+      decodable_ = decodable_ || names_decodable(text);
+    }
     return count();
   }
   bool binary(nlohmann::json::binary_t&) { return count(); }
@@ -105,6 +120,7 @@ class Guard {
   int depth_ = 0;
   bool in_buffers_ = false, at_uri_ = false, has_uri_ = false;
   bool in_asset_ = false, at_version_ = false, at_list_ = false;
+  bool decodable_ = false;
 };
 
 using nlohmann::json;
@@ -276,29 +292,19 @@ void give_views(json& gltf) {
   }
 }
 
-// Encodes percent signs that begin no encoded character, as in names that were never encoded.
-// Returns "" for a name that needs no change.
-std::string with_percents_encoded(const std::string& uri) {
-  const auto hex = [&](std::size_t at) {
-    return at < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[at])) != 0;
-  };
-  std::string encoded;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    encoded += uri[i];
-    if (uri[i] == '%' && !(hex(i + 1) && hex(i + 2))) encoded += "25";
-  }
-  return encoded.size() == uri.size() ? std::string() : encoded;
-}
-
-void encode_percents(json& gltf) {
+// Has tinygltf ask for URIs as they are written: Companions decodes a file's name where there is no
+// file of that very name.
+void keep_names(json& gltf) {
   for (const char* key : {"buffers", "images"}) {
     for (json& object : gltf_list(gltf, key)) {
       if (!object.is_object() || !object.contains("uri") || !object["uri"].is_string()) continue;
-      const auto& uri = object["uri"].get_ref<const std::string&>();
-      if (uri.starts_with("data:")) continue;
-      if (std::string encoded = with_percents_encoded(uri); !encoded.empty()) {
-        object["uri"] = std::move(encoded);
+      auto& uri = object["uri"].get_ref<std::string&>();
+      if (!names_decodable(uri)) continue;
+      std::string encoded;
+      for (const char c : uri) {
+        encoded += c == '%' ? "%25" : c == '+' ? "%2B" : std::string(1, c);
       }
+      uri = std::move(encoded);
     }
   }
 }
@@ -313,7 +319,7 @@ std::vector<unsigned char> reworded(std::span<const unsigned char> bytes,
   if (shrink_fallbacks(gltf) > (binary ? 1 : 0))
     refuse(name, "has more than one buffer without a uri");
   give_views(gltf);
-  encode_percents(gltf);
+  keep_names(gltf);
   for (const char* key : {"buffers", "images", "bufferViews", "accessors", "meshes"})
     if (gltf[key].empty()) gltf.erase(key);  // a list must not be
   const std::string changed = gltf.dump();
@@ -347,12 +353,6 @@ Bytes glb_bytes(const std::string& json, const Bytes& data) {
   return out;
 }
 
-std::size_t guard_gltf_json(std::span<const unsigned char> text, const std::string& name) {
-  Guard guard(name);
-  nlohmann::json::sax_parse(text.begin(), text.end(), &guard);
-  return guard.embedded();
-}
-
 nlohmann::json& gltf_list(nlohmann::json& object, const char* key) {
   nlohmann::json& found = object[key];
   if (!found.is_array()) found = nlohmann::json::array();
@@ -374,8 +374,9 @@ GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string
   const bool binary = text.empty();
   if (binary) text = json_of_glb(bytes, name);
   std::vector<unsigned char> changed;
-  if (guard_gltf_json(text, name) > (binary ? 1 : 0) || contains(text, kDracoExtension) ||
-      contains(text, "%")) {
+  Guard guard(name);
+  json::sax_parse(text.begin(), text.end(), &guard);
+  if (guard.embedded() > (binary ? 1 : 0) || guard.decodable() || contains(text, kDracoExtension)) {
     changed = reworded(bytes, text, binary, name);
     bytes = changed;
     text = binary ? json_of_glb(bytes, name) : bytes;
@@ -399,6 +400,7 @@ GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string
   }
   if (!good) refuse(name, error.empty() ? "is not valid glTF" : first_line(error));
   if (!error.empty()) out.warnings.push_back(one_line(first_line(error)));
+  for (tinygltf::Image& image : out.gltf.images) image.uri = decoded_uri(image.uri);
   out.pictures.resize(out.gltf.images.size());
   return out;
 }

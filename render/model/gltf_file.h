@@ -24,12 +24,6 @@ inline constexpr const char* kOldGltf =
     "is glTF 1.0, which Limpid cannot read; convert it to glTF 2.0 (for example with "
     "gltf-pipeline)";
 
-// Checks the JSON text of a glTF file before memory is spent on it. Returns how many buffers stand
-// for the binary chunk (each would be a copy of it). Throws std::runtime_error naming the file for
-// text that is no JSON object, nests deeper than 64, has more than 8 million values or 1 million
-// objects, or is glTF 1.
-std::size_t guard_gltf_json(std::span<const unsigned char> text, const std::string& name);
-
 // Returns the JSON text of a file of either kind. Throws std::runtime_error naming the file.
 std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,
                                          const std::string& name);

@@ -57,6 +57,14 @@ TEST(Png, SaysHowLargeItIsOnPaper) {
   EXPECT_EQ(Bytes(behind_header + 21, printed.end()), Bytes(plain.begin() + 33, plain.end()));
 }
 
+// The checksum is that which zlib's crc32 gives.
+TEST(Png, SaysWhatItIs) {
+  const Bytes png = png_of(2, 3, kPixels, 0, "limpid 9, seed 1");
+  const std::string text(png.begin() + 8 + 25, png.end());
+  EXPECT_THAT(text, testing::StartsWith(std::string("\0\0\0\x1ctEXtDescription\0", 20) +
+                                        "limpid 9, seed 1\xcd\x50\x94\x35"));
+}
+
 TEST(Png, IsOfAsManyPixelsAsItSays) {
   EXPECT_NO_THROW(png_of(3, 2, kPixels));
   for (const auto& [width, height] : {std::pair(2, 2), {3, 3}, {0, 3}, {2, 0}, {-2, -3}, {6, 2}}) {

@@ -16,6 +16,7 @@ struct DrawnText {
   ImVec2 min, max;  // of its letters
   ImVec4 clip;      // what lies beyond is not seen
   ImU32 colour = 0;
+  ImVec2 at = {};  // where it was put: the upper left corner of its first letter's cell
 
   ImVec2 middle() const { return {(min.x + max.x) / 2, (min.y + max.y) / 2}; }
   // Tells whether any, or all, of its width and height is seen.
@@ -89,7 +90,8 @@ inline std::vector<DrawnText> drawn_texts() {
                              std::abs(gap - std::round(gap)) < 0.05 && a.col == all.back().colour;
         if (!goes_on) {
           all.push_back({"", list._OwnerName != nullptr ? list._OwnerName : "", a.pos, b.pos,
-                         command.ClipRect, a.col});
+                         command.ClipRect, a.col,
+                         ImVec2(static_cast<float>(left), static_cast<float>(top))});
         } else {
           all.back().text.append(static_cast<std::size_t>(std::lround(std::max(gap, 0.0))), ' ');
         }

@@ -135,6 +135,16 @@ class TestSessions(InAFolder):
         part.rename(self.folder / "a.h5")
         self.assertEqual(len(session["device/position"]), ROWS)
 
+    def test_a_recording_that_goes_on_has_its_name_already(self) -> None:
+        file = self.folder / "a.h5"
+        with self.assertRaisesRegex(limpid.LimpidError, r"a\.h5: no such file$"):
+            limpid.session(file)
+        part = write_session(self.folder / "a.h5.part")
+        session = limpid.session(file)
+        self.assertEqual(len(session["coupling/eta"]), ROWS)
+        part.rename(file)
+        self.assertEqual(len(session["device/position"]), ROWS)
+
     def test_what_is_kept_needs_no_file_any_more(self) -> None:
         file = write_session(self.folder / "a.h5")
         session = limpid.session(file)

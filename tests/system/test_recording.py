@@ -206,16 +206,37 @@ class Places(WithAnArm):
           return control(fd, what, given);
         }"""
 
-    def test_without_locks_it_is_recorded_and_that_is_said(self) -> None:
-        source, library, out = self.out(".c"), self.out(".so"), self.out()
+    def without_locks(self, *words: str | Path) -> subprocess.Popen[str]:
+        source, library = self.out(".c"), self.out(".so")
         source.write_text(self.NO_LOCKS)
         subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, source], check=True)
-        words = [str(word) for word in (LIMPID, "run", *self.arm, "--duration", "0.2", "--record", out)]
-        done = subprocess.run(words, env={**os.environ, "LD_PRELOAD": str(library)}, text=True,
-                              capture_output=True, timeout=120)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("has no locks", done.stderr)
+        here = {name: str(self.directory) for name in ("XDG_CONFIG_HOME", "XDG_RUNTIME_DIR")}
+        program = subprocess.Popen([LIMPID, *words], text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, env={**os.environ, **here, "LD_PRELOAD": str(library)})
+        self.addCleanup(program.communicate)
+        self.addCleanup(program.kill)
+        return program
+
+    def test_without_locks_it_is_recorded_and_that_is_said(self) -> None:
+        out = self.out()
+        done = self.without_locks("run", *self.arm, "--duration", "0.2", "--record", out)
+        said = done.stderr.read()
+        self.assertEqual(done.wait(120), 0, said)
+        self.assertIn("has no locks", said)
         self.assertEqual(len(read_session(out)), 200)
+
+    def test_without_locks_settings_are_kept_and_a_socket_is_one_programs(self) -> None:
+        kept = self.without_locks("identify", "socket:here", "--forget")
+        self.assertEqual((kept.stderr.read(), kept.wait(60)), ("", 0))
+        self.assertTrue((self.directory / "limpid/devices.toml").exists())
+        first = self.without_locks("serve", "one")
+        self.assertIn("listens", first.stdout.readline())
+        second = self.without_locks("serve", "one")
+        self.assertIn(f"process {first.pid} (limpid serve one) uses this socket", second.stderr.read())
+        first.kill()
+        first.wait()
+        third = self.without_locks("serve", "one")
+        self.assertIn("listens", third.stdout.readline(), "the socket of a killed program is taken over")
 
     def test_a_name_that_is_too_long_is_refused_in_a_line(self) -> None:
         long = self.directory / ("x" * 249 + ".h5")

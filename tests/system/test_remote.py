@@ -198,6 +198,13 @@ class TestServe(RemoteTest):
         with self.assertRaisesRegex(limpid.RequestError, r"tick of 1e-05 s.*0\.0001 to 0\.1"):
             loop.open(session=fast)
         self.assertEqual(loop.get("loop.tick"), {"loop.tick": 0.001})
+        with self.assertRaisesRegex(limpid.RequestError, r"open: hand: a tick of 1e-05 s"):
+            loop.open(hand=fast, arm="omni.urdf")
+        with self.assertRaisesRegex(limpid.ProgramError, r"--hand .*tick of 1e-05 s.*loop\.tick=0\.001 replaces"):
+            limpid.serve(hand=fast)
+        for tick in (0.001, 1e-5):
+            with limpid.serve(hand=fast, loop__tick=tick) as own:
+                self.assertEqual(own.get("loop.tick"), {"loop.tick": tick})
 
     def test_start_over_begins_the_hand_again(self) -> None:
         loop = self.connect()
@@ -273,7 +280,7 @@ class TestServe(RemoteTest):
         loop = self.connect()
         file = self.home / "mine.png"
         file.write_text("mine")
-        with self.assertRaisesRegex(limpid.RequestError, "picture: file: .*mine.png.* exists already; .*replace"):
+        with self.assertRaisesRegex(limpid.RequestError, "picture: file: .*mine.png.* exists already; .*replace=True"):
             loop.picture(file)
         self.assertEqual(file.read_text(), "mine")
         loop.picture(file, replace=True)
@@ -528,7 +535,7 @@ class TestPackage(RemoteTest):
             limpid.run(duration=0.05, record=out)
         self.assertEqual(len(limpid.run(duration=0.1, record=out, force=True)), 100)
         loop = self.connect()
-        with self.assertRaisesRegex(limpid.RequestError, "exists"):
+        with self.assertRaisesRegex(limpid.RequestError, "exists; force=True overwrites it"):
             loop.record(out)
         loop.record(out, force=True)
         loop.stop()

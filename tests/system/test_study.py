@@ -22,6 +22,7 @@ PACKAGE = ASSETS / "python"
 sys.path.insert(0, str(PACKAGE))
 os.environ["LIMPID"] = str(LIMPID)
 
+import limpid  # noqa: E402
 from limpid import study  # noqa: E402
 from limpid.study import fits  # noqa: E402
 from limpid.study.report import binned, nice_ticks  # noqa: E402
@@ -295,6 +296,37 @@ class TestMethods(unittest.TestCase):
         self.assertEqual(sorted(levels("a")), [1] * 4 + [2] * 4 + [3] * 4)
         self.assertEqual(levels("a"), levels("a"))
         self.assertNotEqual(levels("a"), levels("b"))
+
+    def test_what_cannot_be_is_named_with_what_is_allowed(self) -> None:
+        for name, allowed, ask in (
+            ("guess", "a finite number above 0", lambda: study.Quest("a")),
+            ("lapse", "a number from 0 to below 1", lambda: study.Quest(1.0, lapse=1)),
+            ("start", "a number above 0, between the limits 2 and 3", lambda: study.Staircase(1.0, low=2, high=3)),
+            ("start", "a number above 0", lambda: study.Staircase(None)),
+            ("steps", "a list of at least 1 number above 1", lambda: study.Staircase(1.0, steps="ab")),
+            ("low", "a finite number from 0 on", lambda: study.Adjustment(1.0, low="a")),
+            ("levels", "a list of at least 1 number", lambda: study.ConstantStimuli(3, 1, 1)),
+            ("levels", "a list of at least 1 number", lambda: study.ConstantStimuli("abc", 1, 1)),
+            ("levels", "a finite number", lambda: study.ConstantStimuli([[1, 2], [3, 4]], 1, 1)),
+            ("repeats", "a whole number from 1 on", lambda: study.ConstantStimuli([1], "a", 1)),
+            ("answers", "a list of pairs", lambda: study.fit(3)),
+            ("answers, pair 1", "a level and", lambda: study.fit("abc".split())),
+            ("level", "a finite number above 0", lambda: study.equality([(1, 0), (1, 2)])),
+            ("count", "a whole number from 1 on", lambda: study.latin_square("a")),
+            ("conditions", "a list", lambda: study.order_for(0, 3)),
+            ("right", "a whole number from 0 on", lambda: study.proportion_interval("a", 2)),
+            ("values", "a list of at least 2 numbers", lambda: study.mean_interval("abc")),
+        ):
+            with self.subTest(name=name), self.assertRaisesRegex(
+                    limpid.LimpidError, f"^{name}: .* is not allowed; allowed: {allowed}"):
+                ask()
+
+    def test_a_threshold_is_found_of_one_who_never_slips(self) -> None:
+        answers = [(level, right) for level in (0.1, 1.0, 100.0) for right in (True, True, level > 1)]
+        self.assertLess(study.fit(answers, lapse=0).threshold, 10)
+        quest = study.Quest(1.0, lapse=0, low=100.0)
+        quest.answer(False)
+        self.assertEqual(quest.level, 100)
 
     def test_an_adjustment_comes_near_and_ends_when_it_is_the_same(self) -> None:
         adjusted = study.Adjustment(4.0)

@@ -513,8 +513,9 @@ const char* way_out(const Parameters& p) {
 // Returns why the coupling's own part of E_c is a fault; empty if it is none.
 std::string own_fault(const CouplingReading& now, const Parameters& p) {
   const double own = now.energy.own();
-  // A law with a ledger makes another promise, which the ledger shows.
-  if (info(p.kind).keeps_ledger() || own <= kGivenEnergy) return {};
+  // A law with a ledger makes another promise, which the ledger shows; so does one of the port.
+  const LawInfo& law = info(p.kind);
+  if (law.keeps_ledger() || law.promise == Promise::port || own <= kGivenEnergy) return {};
   return fmt::format(
       "The coupling has given {} more energy than it received. The coupling is not passive in this "
       "grip.\n{}",

@@ -67,6 +67,7 @@ void IdentifyController::begin(IdentifyRequest order) {
   request_.guess = live_.stage().arm();
   id_ = devices_.hub().in_use();
   if (simulated()) {
+    request_.seed = kSeed;
     bench_ = simulated_bench(request_, kSeed);
     name_ = bench_.name;
   } else {

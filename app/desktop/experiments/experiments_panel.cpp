@@ -86,8 +86,9 @@ void ExperimentsPanel::offer(const ArmDescription& arm) {
   if (arm.urdf != offered_.front().arm.description.urdf) {
     offered_.push_back({experiment_arm(arm, false), {}});
   }
-  if (arm.encoder_step > 0 || arm.assumed_delay > 0 || arm.delay.value_or(0) > 0) {
-    offered_.push_back({experiment_arm(arm, true), {}});
+  ExperimentArm rough = experiment_arm(arm, true);
+  if (rough.settings.encoder_step > 0 || rough.settings.device_delay > 0) {
+    offered_.push_back({std::move(rough), {}});
   }
   for (Offered& each : offered_) {
     for (const Experiment& one : experiments()) {

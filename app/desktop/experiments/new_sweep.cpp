@@ -42,9 +42,11 @@ std::vector<const FieldInfo*> axis_fields() {
 // Draws an item of a list: words, and behind them the name in plans. Returns whether it is chosen.
 bool item(const char* words, const char* name, bool present) {
   ImGui::PushID(name);
+  ImGui::BeginGroup();  // a tooltip is of the whole row
   const bool chosen = ImGui::Selectable(words, present);
   ImGui::SameLine();
   ImGui::TextColored(colour_vector(current_palette().muted), "%s", name);
+  ImGui::EndGroup();
   ImGui::PopID();
   return chosen;
 }

@@ -105,7 +105,8 @@ fs::path Exporter::carry_out(const ExportOrder& order, const Stage& stage) {
     tape->play(canvas);
     const Raster raster = canvas.take();
     const auto per_metre = static_cast<unsigned>(std::lround(dpi / 0.0254));
-    return written_as(file, png_of(raster.width, raster.height, raster.rgba, per_metre));
+    return written_as(file, png_of(raster.width, raster.height, raster.rgba, per_metre,
+                                   provenance("", std::nullopt)));
   }));
   return {};
 }

@@ -298,7 +298,7 @@ Answer WindowRemote::twin(const Keys& keys, LineServer::Client client) {
   const std::size_t lane = asked_lane(keys, kTwinLane);
   check_beside(keys, lane, lanes.count);
   Parameters p = lanes.parameters[lane];
-  if (sets) set_values(p, keys, with_limits_of(d_.live.stage().arm(), highest_));
+  if (sets) set_values(p, keys, lane, with_limits_of(d_.live.stage().arm(), highest_));
   lead(client);
   if (on && lanes.count == lane) run("session.add_run");
   while (!on && lanes.count > lane) run("session.drop_run");

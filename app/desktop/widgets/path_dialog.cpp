@@ -126,7 +126,6 @@ void PathDialog::draw_places(const std::vector<Place>& places) {
     ImGui::PushID(place.folder.c_str());
     if (ImGui::Selectable(place.name.c_str(), place.folder.string() == listed_)) {
       go_to(place.folder);
-      if (!options_.new_file) text_ += '/';
     }
     note_place(place.name.c_str());
     tooltip(place.folder.c_str());

@@ -9,8 +9,9 @@
 //     loop.arm();  // as soon as a person holds the device
 //     while (running) {
 //       device.wait();
+//       const auto positions = device.positions();  // must live until tick() returns
 //       limpid::DeviceLoop::Reading reading;
-//       reading.position = device.positions();
+//       reading.position = positions;
 //       device.push(loop.tick(reading));
 //     }
 //
@@ -32,15 +33,18 @@
 #endif
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <ranges>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 // Version of this header by the rules of semantic versioning: incompatible changes raise the first
@@ -54,6 +58,18 @@
 namespace limpid {
 
 using Point3 = std::array<double, 3>;  // x, y, z [m]
+
+// A view of numbers that the caller keeps until the tick that takes them returns. A vector or array
+// that nobody keeps, as a function returns it, does not compile.
+class KeptNumbers : public std::span<const double> {
+ public:
+  constexpr KeptNumbers() noexcept = default;
+  constexpr KeptNumbers(const double* first, std::size_t count) : span(first, count) {}
+  template <std::ranges::borrowed_range R>
+  requires std::convertible_to<R, std::span<const double>>
+  constexpr KeptNumbers(R&& numbers)  // NOLINT(bugprone-forwarding-reference-overload)
+      : span(std::forward<R>(numbers)) {}
+};
 
 class LIMPID_API LoopError : public std::runtime_error {
  public:
@@ -279,7 +295,7 @@ class LIMPID_API DeviceLoop : public Loop {
   // finite, or of another number of joints, gives no torque and leaves the loop as it is. Positions
   // of a reading that is not fresh are not looked at after the first, and may be empty.
   struct Reading {
-    std::span<const double> position;  // of each joint, now
+    KeptNumbers position;  // of each joint, now
     // False: the same reading as at the last tick. Force ends where none is fresh for 5 ms.
     bool fresh = true;
     bool hand = true;    // False: the dead-man switch is open; force waits.
@@ -326,10 +342,10 @@ class LIMPID_API DeviceLoop : public Loop {
 class LIMPID_API SimulatedLoop : public Loop {
  public:
   struct Hand {
-    Point3 target{};                   // where it wants the tip [m]
-    double grip = 1;                   // 1 holds, 0 has let go; scales stiffness and damping
-    bool magnet = false;               // picks up objects that may be picked up
-    std::span<const double> torque{};  // one a joint, pushed besides; of another size: none
+    Point3 target{};       // where it wants the tip [m]
+    double grip = 1;       // 1 holds, 0 has let go; scales stiffness and damping
+    bool magnet = false;   // picks up objects that may be picked up
+    KeptNumbers torque{};  // one a joint, pushed besides; of another size: none
   };
 
   // Begins at rest, in the middle of the joints' ranges. Errors: LoopError.

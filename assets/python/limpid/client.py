@@ -18,7 +18,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Deque, Dict, List, Mapping, NamedTuple, Optional, Sequence, Type
 
-from limpid.errors import ArgumentError, LimpidError, ProgramError, RecordingError, RequestError
+from limpid.errors import ArgumentError, LimpidError, ProgramError, RecordingError, RequestError, in_python
 from limpid.program import find_program, setting_words
 from limpid.runs import hand_file
 from limpid.values import SHORT, Hand, PathLike, names_of, number, path_of, plain, settings_of
@@ -112,8 +112,8 @@ class Client:
         """Sets all of these or, where one is refused, none. `twin`: those of the second run; `lane`: 1
         is the second run, too, and 2 the third. `reset`: all others have their usual values then, up
         to limits that a person has chosen. Settings are those of a dict, or keywords:
-        coupling__eta=0.5. Of a window they last as long as this connection; then those of its user
-        come back."""
+        coupling__eta=0.5. Those of hand, device and loop are the same for all runs: the first run's. Of
+        a window they last as long as this connection; then those of its user come back."""
         asked: Dict[str, Any] = {"twin": True} if twin else {}
         if lane:
             asked["lane"] = lane
@@ -159,8 +159,8 @@ class Client:
         """Marks this moment in the window's plots and in what is recorded; returns its tick."""
         return int(self.request("mark", text=text)["tick"])
 
-    def row(self, channels: Optional[Sequence[str]] = None) -> Dict[str, Optional[float]]:
-        """The newest row: values of these channels, or of all, by name."""
+    def row(self, channels: Optional[Sequence[str]] = None) -> Dict[str, Any]:
+        """The newest row by names: these channels, or each number that plots have of the first run."""
         asked = {} if channels is None else {"channels": names_of("channels", channels)}
         return dict(self.request("row", **asked)["values"])
 
@@ -266,7 +266,7 @@ class Client:
         answer = self._answers.pop(number)
         self._raise_trouble()
         if "error" in answer:
-            raise RequestError(str(answer["error"]))
+            raise RequestError(in_python(str(answer["error"])))
         return dict(answer["ok"])
 
     def _raise_trouble(self) -> None:
@@ -314,7 +314,7 @@ class Client:
         if "rows" in message:
             self._rows.append(message)
         elif message.get("event") == "trouble":
-            self._trouble = str(message["error"])
+            self._trouble = in_python(str(message["error"]))
         elif "event" in message:
             pass  # of a newer program
         elif isinstance(message.get("id"), int):

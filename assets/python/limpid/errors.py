@@ -5,6 +5,11 @@ class LimpidError(Exception):
     """Anything that this package refuses or that the program cannot do."""
 
 
+def in_python(said: str) -> str:
+    """A program's message, with what this package has for words of the command line and the socket."""
+    return said.replace("--force", "force=True").replace('"replace": true', "replace=True")
+
+
 class ArgumentError(LimpidError, ValueError):
     """What was given to a function cannot be: the message names it and says what is allowed."""
 

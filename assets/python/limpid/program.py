@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 from typing import List, Mapping, Sequence
 
-from limpid.errors import ProgramError
+from limpid.errors import ProgramError, in_python
 from limpid.values import PathLike, Value, text_of
 
 
@@ -64,7 +64,7 @@ def carry_out(words: Sequence[PathLike]) -> str:
         raise ProgramError(f"{command[0]}: cannot be started: {error}") from error
     if done.returncode != 0:
         said = done.stderr.strip() or done.stdout.strip() or f"exit status {done.returncode}"
-        raise ProgramError(said)
+        raise ProgramError(in_python(said))
     return done.stdout
 
 

@@ -11,7 +11,7 @@ import warnings
 from pathlib import Path
 from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
-from limpid.errors import ArgumentError, ProgramError, RunWarning
+from limpid.errors import ArgumentError, RunWarning
 from limpid.program import carry_out, setting_words
 from limpid.session import Session
 from limpid.values import Hand, PathLike, hand_rows, is_path, number, path_of, settings_of, text_of, whole
@@ -91,10 +91,7 @@ def run(scene: Union[None, PathLike, Scene] = None, hand: Optional[Hand] = None,
         for name, lane in (("twin", twin), ("lane3", lane3)):
             if lane is not None and lane is not False:
                 words += [f"--{name}", *setting_words(settings_of({} if lane is True else lane, name=name), "")]
-        try:
-            carry_out(words)
-        except ProgramError as error:
-            raise ProgramError(str(error).replace("--force", "force=True")) from error
+        carry_out(words)
         session = Session(out, channels)
         for warning in session.warnings:
             warnings.warn(warning, RunWarning, stacklevel=2)

@@ -100,6 +100,10 @@ class _Recording:
         file = self.file
         if self._opened_as and file.endswith(".part") and not os.path.exists(file):
             file = file[: -len(".part")]  # the recording is complete by now
+        if not os.path.exists(file):
+            file += ".part"  # the recording still goes on
+            if not os.path.exists(file):
+                raise LimpidError(f"{self.file}: no such file")
         try:
             with h5py.File(file, "r", swmr=file.endswith(".part")) as opened:
                 found = os.stat(file)
@@ -191,8 +195,8 @@ class Session:
     that were there when it was opened."""
 
     def __init__(self, file: PathLike, channels: Optional[Sequence[str]] = None) -> None:
-        """Opens FILE.h5, or the FILE.h5.part of a recording; `channels`: only these, and the time.
-        Raises LimpidError for anything else, and where there is no channel of such a name."""
+        """Opens FILE.h5, or its FILE.h5.part while the recording goes on; `channels`: only these, and
+        the time. Raises LimpidError for anything else, and where there is no channel of such a name."""
         self._recording = _Recording(file, channels)
         self._lane = MAIN
 

@@ -10,7 +10,7 @@ import difflib
 import math
 import numbers
 import os
-from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, Mapping, Sequence, Union
 
 from limpid.errors import ArgumentError
 
@@ -49,23 +49,52 @@ def plain(name: str, value: Any) -> Value:
                         "True or False")  # fmt: skip
 
 
-def number(name: str, value: Any) -> float:
-    """The same of what has to be a number."""
+def number(name: str, value: Any, allowed: str = "a finite number",
+           holds: Callable[[float], bool] = math.isfinite) -> float:  # fmt: skip
+    """The same of what has to be a number; `allowed` says which ones `holds` is true of."""
     try:
         found = plain(name, value)
-        if not isinstance(found, str):
+        if not isinstance(found, str) and holds(float(found)):
             return float(found)
     except (ArgumentError, OverflowError):
         pass
-    raise ArgumentError(f"{name}: {_shown(value)} is not allowed; allowed: a finite number")
+    raise ArgumentError(f"{name}: {_shown(value)} is not allowed; allowed: {allowed}")
 
 
-def whole(name: str, value: Any) -> int:
-    """The same of what has to be a whole number from 0 on."""
-    found = plain(name, value)
-    if isinstance(found, (str, bool)) or found < 0 or found != int(found):
-        raise ArgumentError(f"{name}: {_shown(value)} is not allowed; allowed: a whole number from 0 on")
-    return int(found)
+def number_above(name: str, value: Any, least: float = 0) -> float:
+    """The same of what has to be a number above that one."""
+    return number(name, value, f"a finite number above {least:g}", lambda x: x > least)
+
+
+def whole(name: str, value: Any, least: int = 0) -> int:
+    """The same of what has to be a whole number from `least` on."""
+    try:
+        found = plain(name, value)
+        if not isinstance(found, (str, bool)) and found >= least and found == int(found):
+            return int(found)
+    except ArgumentError:
+        pass
+    raise ArgumentError(f"{name}: {_shown(value)} is not allowed; allowed: a whole number from {least} on")
+
+
+def items_of(name: str, given: Any, allowed: str, fewest: int = 0) -> List[Any]:
+    """What is in a list, a generator or an array; a text and a dict are none of them."""
+    single = isinstance(given, (str, bytes, Mapping)) or getattr(given, "shape", None) == ()
+    if isinstance(given, Iterable) and not single:
+        found = list(given)
+        if len(found) >= fewest:
+            return found
+    raise ArgumentError(f"{name}: {_shown(given)} is not allowed; allowed: {allowed}")
+
+
+def pairs_of(name: str, given: Any, of: str) -> List[List[Any]]:
+    """A list of pairs; `of` says what is in one."""
+    found = []
+    for each in items_of(name, given, f"a list of pairs of {of}"):
+        found.append(items_of(f"{name}, pair {len(found) + 1}", each, of, 2))
+        if len(found[-1]) > 2:
+            raise ArgumentError(f"{name}, pair {len(found)}: has {len(found[-1])} values; allowed: {of}")
+    return found
 
 
 def text_of(value: Value) -> str:

@@ -17,6 +17,7 @@
 namespace limpid {
 
 inline constexpr const char* kSessionFormat = "limpid-session";
+inline constexpr const char* kSweepFormat = "limpid-sweep";  // of tables, see app/sweep
 // Version 1 counts the travel of slides in units of 0.1 m, and has zeros for contacts that are not
 // there. Both versions are read.
 inline constexpr int kSessionVersion = 2;

@@ -142,6 +142,11 @@ std::vector<std::string> read_bodies(hid_t root, const fs::path& file) {
 
 SessionInfo read_info(hid_t root, const fs::path& file, hdf5::Claims& claims) {
   const std::string format = hdf5::read_text(root, "format", file);
+  if (format == kSweepFormat) {
+    refuse(file, fmt::format("a sweep's table, not a recording; `limpid play {}` opens it in the "
+                             "window",
+                             file.string()));
+  }
   if (format != kSessionFormat) {
     refuse(file, fmt::format("format \"{:.40}\"; needed: \"{}\"", format, kSessionFormat));
   }

@@ -12,6 +12,7 @@
 #include <optional>
 #include <thread>
 
+#include "core/base/descriptor.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session_file.h"
@@ -30,9 +31,6 @@ constexpr const char* kPart = ".part";
 }
 
 constexpr auto kPause = std::chrono::milliseconds(20);  // between two tries
-
-// Returns whether the error means no locks, as on some network file systems.
-bool has_no_locks(int code) { return code == ENOLCK || code == EOPNOTSUPP || code == ENOSYS; }
 
 int open_no_link(const fs::path& file, int flags) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0644);

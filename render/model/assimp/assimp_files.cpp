@@ -58,8 +58,6 @@ std::string kind_of(const std::string& file) {
 std::string portable(std::string file) {
   std::replace(file.begin(), file.end(), '\\', '/');
   while (file.starts_with("./")) file.erase(0, 2);
-  for (std::size_t at = file.find("%20"); at != file.npos; at = file.find("%20", at + 1))
-    file.replace(at, 3, " ");
   return file;
 }
 

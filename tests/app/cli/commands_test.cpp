@@ -83,8 +83,10 @@ TEST_F(Commands, RunOfATwinHasTwoRunsOfTwoLaws) {
   EXPECT_THAT(
       done({"run", "--twin", "coupling.eta=0.7", "--duration", "0.02", "--coupling", "proposed"}),
       ContainsRegex("proposed 1.*proposed 0.7"));
-  EXPECT_THAT(refused({"run", "--twin", "loop.tick=0.0005", "--duration", "0.02"}),
-              HasSubstr("all runs must have the same tick"));
+  for (const char* shared : {"loop.tick=0.0005", "hand.stiffness=444", "device.torque_limit=0.1"}) {
+    EXPECT_THAT(refused({"run", "--twin", shared, "--duration", "0.02"}),
+                HasSubstr("is one setting for all runs; set it for the first run"));
+  }
 }
 
 TEST_F(Commands, RunAndInfoSayForHowLongMotorsWereAtTheirLimit) {
@@ -102,7 +104,7 @@ TEST_F(Commands, RunAndInfoSayForHowLongMotorsWereAtTheirLimit) {
               6e-4);
   std::vector<std::string> usual(weak.begin(), weak.end() - 2);
   EXPECT_THAT(done(usual), Not(HasSubstr("motors at their limit")));
-  usual.insert(usual.end(), {"--twin", "device.torque_limit=0.002"});
+  usual.insert(usual.end(), {"--set", "device.torque_limit=0.01", "--twin", "coupling.k_vc=100"});
   EXPECT_THAT(done(usual), ContainsRegex("motors at their limit +[0-9.]+ s in the second run;"));
 }
 
@@ -701,6 +703,13 @@ TEST_F(Commands, CheckRefusesWhatItDoesNotKnow) {
   EXPECT_THAT(refused({"check", (fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5").string()}),
               HasSubstr("`limpid info "));
   EXPECT_THAT(refused({"check", "none.urdf"}), HasSubstr("none.urdf: no such file"));
+  const fs::path assets = LIMPID_ASSETS_DIR;
+  EXPECT_THAT(refused({"check", (assets / "presets.toml").string()}),
+              HasSubstr("presets.toml: presets of settings"));
+  EXPECT_THAT(refused({"check", (assets / "layouts.toml").string()}),
+              HasSubstr("layouts.toml: layouts of the window"));
+  write("settings.toml", "[coupling]\neta = 0.7\n");
+  EXPECT_THAT(refused({"check", "settings.toml"}), HasSubstr("settings.toml: settings of a run"));
   const Said model = run({"check", (fs::path(LIMPID_ASSETS_DIR) / "scenes/cup.glb").string()});
   EXPECT_THAT(model.out, HasSubstr("triangles"));
 }

@@ -25,7 +25,15 @@ TEST(ALineOfProgress, SaysHowMuchHowFastAndHowLongStill) {
   EXPECT_EQ(progress_line(kRun, 15, 10),
             "run: 50 %, 15.0 of 30.0 s, 1.5 times real time, 10 s left");
   EXPECT_EQ(progress_line({"sweep", 4, "", "runs a second"}, 1, 100),
-            "sweep: 25 %, 0.0 runs a second, 5 min 0 s left");
+            "sweep: 25 %, 0.01 runs a second, 5 min 0 s left");
+}
+
+TEST(ARate, HasTwoDigits) {
+  EXPECT_EQ(rate_text(0.36), "0.36");
+  EXPECT_EQ(rate_text(0.98), "1.0");
+  EXPECT_EQ(rate_text(5.04), "5.0");
+  EXPECT_EQ(rate_text(9.97), "10");
+  EXPECT_EQ(rate_text(412.3), "412");
 }
 
 TEST(ALineOfProgress, SaysNoRateBeforeAnythingIsDone) {

@@ -10,6 +10,7 @@
 #include "app/cli/in_hands_text.h"
 #include "app/cli/look_report.h"
 #include "app/cli/measured_text.h"
+#include "app/cli/outcome_text.h"
 #include "tests/app/cli/said.h"
 
 namespace limpid {
@@ -170,6 +171,19 @@ TEST(LookReport, HasTheSameInJson) {
   EXPECT_TRUE(less["joints"][0]["least"].is_null()) << "nothing was seen";
   EXPECT_TRUE(less["joints"][0]["declared_least"].is_null());
   EXPECT_TRUE(less["joints"][0]["noise"].is_null());
+}
+
+// A value that is no number on an arm for which nothing is promised.
+TEST(OutcomeReport, SaysWhatCouldNotBeMeasured) {
+  Outcome outcome;
+  outcome.arm = "stick";
+  outcome.checks.push_back(at_most("energy", -std::nan(""), 0.1));
+  outcome.checks.back().unjudged = "nothing is promised";
+  testing::internal::CaptureStdout();
+  print_outcome("passivity", outcome);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(),
+            "passivity, on stick: measured\n"
+            "  ----  energy: not measurable (promised for the built-in arm: <= 0.1)\n");
 }
 
 MeasuredHand a_hand() {

@@ -107,6 +107,7 @@ TEST_F(Usage, GuessesWhatIsNearlyRight) {
            {{"experiment", "inerta", "--out", "x"}, "inertia"}}) {
     EXPECT_THAT(refused(words), HasSubstr("did you mean " + meant + "?"));
   }
+  EXPECT_THAT(refused({"--hand", "tuch.csv"}), HasSubstr("\"--hand\": not expected here"));
   for (const char* far : {"banana", "--banana"}) {
     EXPECT_THAT(refused({far}), Not(HasSubstr("did you mean")));
   }

@@ -42,6 +42,12 @@ values = [0.5, 1]
   }
 };
 
+TEST_F(Work, OfARunSaysThatItAsksNothing) {
+  EXPECT_EQ(run({"run", "--yes", "--duration", "0.02"}).err,
+            "limpid: note: --yes changes nothing here: only --live asks a question before it "
+            "begins\n");
+}
+
 TEST_F(Work, OfASweepIsATableAndAFigure) {
   EXPECT_EQ(done({"sweep", plan(), "--out", "swept", "--threads", "2", "--csv"}),
             "4 of 4 points in swept/table.h5\n");
@@ -50,15 +56,22 @@ TEST_F(Work, OfASweepIsATableAndAFigure) {
   EXPECT_THAT(text_of("swept/figure.svg"), HasSubstr("<svg"));
   EXPECT_EQ(done({"sweep", "plan.toml", "--out", "swept", "--gather"}),
             "4 of 4 points in swept/table.h5\n");
+  for (const char* command : {"info", "check"}) {
+    EXPECT_THAT(refused({command, "swept/table.h5"}),
+                ContainsRegex("swept/table.h5: a sweep's table.*; `limpid play swept/table.h5`"));
+  }
 }
 
 TEST_F(Work, OfASweepCanBeSharedOut) {
   const std::string file = plan();
-  EXPECT_EQ(done({"sweep", file, "--out", "swept", "--shard", "1/2", "--threads", "1"}), "");
+  EXPECT_THAT(done({"sweep", file, "--out", "swept", "--shard", "1/2", "--threads", "1"}),
+              ContainsRegex("^part 1/2 is done; [0-4] of 4 points are in swept; `limpid sweep "
+                            "plan.toml --out swept --gather` makes the table"));
   EXPECT_FALSE(fs::exists("swept/table.h5"));
   const Said half = run({"sweep", file, "--out", "swept", "--gather"});
   EXPECT_EQ(half.status, 1) << "it is not complete";
-  EXPECT_EQ(done({"sweep", file, "--out", "swept", "--shard", "2/2", "--threads", "1"}), "");
+  EXPECT_THAT(done({"sweep", file, "--out", "swept", "--shard", "2/2", "--threads", "1"}),
+              HasSubstr("part 2/2 is done; 4 of 4 points are in swept; "));
   EXPECT_EQ(done({"sweep", file, "--out", "swept", "--gather"}),
             "4 of 4 points in swept/table.h5\n");
   for (const char* wrong : {"0/2", "3/2", "1/0", "1", "1/2x", "a/b", "-1/2", "1/100000"}) {
@@ -152,7 +165,8 @@ TEST_F(Work, OfAnExperimentSaysWhichArmItDoesNotTake) {
        {std::pair(std::vector<std::string>{"robust", "--device", "touch.urdf"},
                   "robust: accepts no other arm or settings, because it has arms of its own: an "
                   "ideal arm and a Touch"),
-        {{"zwidth", "--device", "touch.urdf", "--readings"}, "zwidth: takes no --readings"},
+        {{"zwidth", "--device", "touch.urdf", "--readings"},
+         "zwidth: takes no readings of an arm's file (--readings)"},
         {{"passivity", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
         {{"all", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
         {{"coordination", "--device", "omega.urdf"},
@@ -316,6 +330,9 @@ TEST_F(Work, OfIdentifyingNeedsADeviceAndAFolder) {
     EXPECT_THAT(refused({"identify", "simulated", "--out", "o", "--gravity", wrong}),
                 HasSubstr("needed: none, or X,Y,Z in m/s^2"));
   }
+  EXPECT_THAT(refused({"identify", "simulated", "--out", "o", "--scene", "table.toml"}),
+              HasSubstr("\"--scene table.toml\": not expected here"));
+  EXPECT_THAT(done({"identify", "--help"}), HasSubstr("REQUIRED, except with --forget"));
   EXPECT_THAT(refused({"identify", "simulated", "--out", "o", "--masses-right"}),
               HasSubstr("the masses of the simulated device differ"));
   EXPECT_THAT(refused({"identify", "--out", "o", "--yes", "--load", "0.1"}),
@@ -345,9 +362,20 @@ TEST_F(Work, OfIdentifyingFindsOutASimulatedDevice) {
     const json& when = found.at("rehearsal").at(law);
     EXPECT_LT(when.at("identified").at("off"), when.at("file").at("off")) << law;
   }
+  EXPECT_THAT(found.at("provenance").get<std::string>(), HasSubstr(", seed 1, "));
+  EXPECT_THAT(text_of("o/identified.urdf"), HasSubstr(", seed 1, "));
+  EXPECT_THAT(text_of("o/report.html"), HasSubstr("Seed of the simulated device: 1."));
   EXPECT_GT(lines_of(text_of("o/motion.csv")).size(), 1000u);
   EXPECT_TRUE(fs::exists("o/motion-with-load.csv"));
   EXPECT_THAT(run({"check", "o/identified.urdf"}).out, HasSubstr("delay of"));
+}
+
+TEST_F(Work, OfIdentifyingSaysHowToStayWithinTheLimits) {
+  const Said said = run(
+      {"identify", "simulated", "--out", "o", "--range", "0.9", "--torque", "1", "--seed", "3"});
+  EXPECT_EQ(said.status, 1);
+  EXPECT_THAT(said.err, HasSubstr("moves too fast); try a smaller --range or --torque, or another "
+                                  "--seed; o/motion.csv contains"));
 }
 
 TEST_F(Work, OfIdentifyingForgetsOnlyWhatIsChosen) {

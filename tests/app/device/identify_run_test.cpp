@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "devices/files/urdf_file.h"
 #include "devices/identify/unlike_device.h"
@@ -90,6 +92,71 @@ TEST(IdentifyRun, DoesNotPushADeviceThatHasNotSaidWhereItIs) {
   const IdentifyRun run = simulate_identification(device, omni(), {}, progress);
   EXPECT_EQ(run.end, ExcitationEnd::not_well);
   EXPECT_FALSE(device.pushed);
+}
+
+// A device that stands still. It answers late once, and wants to end after some readings.
+class LateOnce final : public Device {
+ public:
+  explicit LateOnce(IdentifyProgress& progress)
+      : traits_(UnlikeDevice(omni(), {}).traits()), progress_(progress) {
+    UnlikeDevice(omni(), {}).read(rest);
+    rest.age = 0;
+  }
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override {
+    rest.count = ++reads;
+    if (reads == 20) std::this_thread::sleep_for(std::chrono::milliseconds(12));
+    if (reads == 60) progress_.cancel = true;
+    newest = rest;
+    return true;
+  }
+  void write(std::span<const double> torque) noexcept override {
+    for (const double t : torque) most = std::max(most, std::abs(t));
+  }
+  void stop() noexcept override { ++stops; }
+
+  DeviceReading rest;
+  std::uint64_t reads = 0;
+  int stops = 0;
+  double most = 0;  // [N m]
+
+ private:
+  DeviceTraits traits_;
+  IdentifyProgress& progress_;
+};
+
+// Ticks that were given up have rows of their own: time in the record is the time that passed.
+TEST(IdentifyRun, HasARowForEachTickThatWasMissed) {
+  IdentifyProgress progress;
+  LateOnce device(progress);
+  const IdentifyRun run = run_identification(device, omni(), {}, progress, {});
+  EXPECT_NE(run.end, ExcitationEnd::running);
+  EXPECT_NE(run.end, ExcitationEnd::complete);
+  EXPECT_GE(device.stops, 1);
+  ASSERT_GE(device.reads, 20u);
+  const Eigen::Index rows = run.record.rows();
+  EXPECT_GE(rows, static_cast<Eigen::Index>(device.reads) + 8) << "at least 12 ms passed at once";
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    for (Eigen::Index joint = 0; joint < 3; ++joint) {
+      ASSERT_EQ(run.record.x(k, joint), device.rest.x[static_cast<std::size_t>(joint)]) << k;
+      ASSERT_LE(std::abs(run.record.torque(k, joint)), device.most) << k;
+    }
+  }
+  EXPECT_EQ(run.record.T, 1e-3);
+  const ReadingTimes& timing = run.timing;
+  EXPECT_EQ(timing.intervals.size(), device.reads - 1) << "between two readings each";
+  double sum = 0, longest = 0;
+  for (const double each : timing.intervals) {
+    sum += each;
+    longest = std::max(longest, each);
+  }
+  EXPECT_EQ(timing.most, longest);
+  EXPECT_GE(timing.most, 0.012);
+  EXPECT_LE(timing.p50, timing.p99);
+  EXPECT_LE(timing.p99, timing.most);
+  EXPECT_NEAR(timing.rate * sum, static_cast<double>(device.reads - 1), 1e-6);
+  EXPECT_GT(progress.duration, 1);
+  EXPECT_GT(progress.time, 0);
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST(WhyNot, NamesTheExperimentAndTheReason) {
   EXPECT_THAT(why_not(experiment("robust"), touch),
               HasSubstr("robust: accepts no other arm or settings, because it has arms of its own: "
                         "an ideal arm and a Touch"));
-  EXPECT_THAT(why_not(experiment("zwidth"), touch), HasSubstr("zwidth: takes no --readings"));
+  EXPECT_THAT(why_not(experiment("zwidth"), touch), HasSubstr("zwidth: takes no readings"));
   ExperimentArm exact = touch;
   exact.readings = false;
   EXPECT_EQ(why_not(experiment("zwidth"), exact), "");

@@ -6,13 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <sstream>
 #include <string_view>
 
 #include "app/experiments/coordination.h"
 #include "app/experiments/signals.h"
 #include "app/run/analysis.h"
 #include "core/dynamics/arm.h"
+#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
@@ -186,6 +189,22 @@ TEST_F(LiveExperiments, CoordinationAsksForTwoLawsAndShowsThem) {
   EXPECT_NEAR(outcome.checks[3].value, contact_slope(made_[1]) / contact_slope(made_[0]), 1e-9);
 }
 
+// The second and third eta are judged: the share of inertia by (24), that of damping by eta.
+void expect_inertia_judged(const Outcome& outcome, std::size_t i, double eta, double inertia,
+                           double damping) {
+  if (i == 0) return;
+  const Parameters p;
+  const double b = 0.012 + p.b_v + p.k_vc * p.tick / 2;
+  const Check &of_inertia = outcome.checks.at(2 * i - 1), &of_damping = outcome.checks.at(2 * i);
+  EXPECT_NEAR(of_inertia.value, std::abs(inertia - eta * (1 + (1 - eta) * b / p.alpha)), 1e-9);
+  EXPECT_NEAR(of_damping.value, std::abs(damping - eta), 1e-9);
+  const std::string told = fmt::format("felt at eta = {:.2f}, ", eta);
+  EXPECT_EQ(of_inertia.what.find("inertia " + told), 0u) << of_inertia.what;
+  EXPECT_EQ(of_damping.what.find("damping " + told), 0u) << of_damping.what;
+  EXPECT_EQ(of_inertia.bound, 0.25);
+  EXPECT_EQ(of_damping.bound, 0.25);
+}
+
 TEST_F(LiveExperiments, InertiaAsksForThreeEtasAndDividesByTheFirst) {
   LiveLaboratory bench = lab({swinging, 3000});
   const Outcome outcome = run_the("inertia", bench);
@@ -199,6 +218,9 @@ TEST_F(LiveExperiments, InertiaAsksForThreeEtasAndDividesByTheFirst) {
     EXPECT_EQ(asked_[i].parameters.kind, CouplingKind::proposed);
     EXPECT_NEAR(asked_[i].parameters.eta, etas[i], 1e-12);
     EXPECT_EQ(asked_[i].seconds, 15);
+    EXPECT_EQ(asked_[i].name, fmt::format("eta-{:.2f}", etas[i]));
+    EXPECT_EQ(asked_[i].instruction.find(fmt::format("eta = {:.2f}: for 15 s, swing", etas[i])),
+              0u);
     const Session& s = made_[i];
     expect_rows(curve_of(outcome, "Estimate of the human torque |f1|",
                          fmt::format("eta = {:.2f}", etas[i])),
@@ -209,7 +231,9 @@ TEST_F(LiveExperiments, InertiaAsksForThreeEtasAndDividesByTheFirst) {
     EXPECT_NEAR(inertia.x, etas[i], 1e-12);
     EXPECT_NEAR(inertia.y, felt.inertia / one.inertia, 1e-9);
     EXPECT_NEAR(damping.y, felt.damping.mean() / one.damping.mean(), 1e-9);
+    expect_inertia_judged(outcome, i, etas[i], inertia.y, damping.y);
   }
+  EXPECT_EQ(outcome.checks.at(0).value, one.inertia);
   // Lines: eta of the damping; (24) of the inertia, where the estimate lags by m / alpha.
   const Parameters& p = bench.parameters;
   const double b = device_damping(bench.arm, p).mean() + p.b_v + p.k_vc * p.tick / 2;
@@ -236,6 +260,9 @@ TEST_F(LiveExperiments, PassivityShowsTheEnergyOfThreeLaws) {
     EXPECT_EQ(asked_[i].name, laws[i]);
     EXPECT_STREQ(name(asked_[i].parameters.kind), laws[i]);
     EXPECT_EQ(asked_[i].seconds, 20);
+    EXPECT_EQ(
+        asked_[i].instruction.find(fmt::format("The {} coupling: for 20 s, move freely", laws[i])),
+        0u);
     const Session& s = made_[i];
     expect_rows(curve_of(outcome, "Total", laws[i]), s,
                 [&](auto k) { return 1e3 * s.at(k, Column::energy_total)[0]; });
@@ -265,6 +292,9 @@ TEST_F(LiveExperiments, ZwidthDoublesTheWallUntilItBuzzes) {
       EXPECT_EQ(stiffnesses_[at], wall);
       EXPECT_EQ(asked_[at].name, fmt::format("{}-{:.0f}", laws[i], wall));
       EXPECT_EQ(asked_[at].seconds, 6);
+      EXPECT_EQ(asked_[at].instruction.find(
+                    fmt::format("Wall of {:.0f} N/m, {} coupling: for 6 s, tap", wall, laws[i])),
+                0u);
       EXPECT_NEAR(p.y, 1e3 * chatter_in_contact(made_[at], bench.arm), 1e-9);
       const bool last = &p == &line.points.back();
       if (!last) {
@@ -309,6 +339,75 @@ TEST_F(LiveExperiments, WhatIsFeltIsTheTorqueAlongTheMotion) {
   EXPECT_NEAR(felt.inertia, 0.7, 0.01);
   EXPECT_NEAR(felt.damping[0], 0.02 / (0.1 * 6), 1e-3);
   EXPECT_NEAR(felt.damping[1], 0, 1e-3);
+}
+
+// The recording must be longer than what smooths it.
+TEST_F(LiveExperiments, WhatIsFeltNeedsALongerRecordingThanThat) {
+  const ArmDescription arm = lab({swinging}).arm;
+  Session s;
+  s.info.tick = 1e-3;
+  s.layout = RowLayout(3);
+  s.rows.assign(199 * static_cast<std::size_t>(s.layout.stride()), 0.0);
+  try {
+    felt_of(s, arm);
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("the recording is too short"), std::string::npos);
+  }
+}
+
+// Rows made by hand: where it touches, the tip swings at 50 Hz; elsewhere faster.
+TEST_F(LiveExperiments, ChatterIsTheTipsFastMotionWhereItTouches) {
+  const ArmDescription arm = lab({swinging}).arm;
+  Session s;
+  s.info.tick = 1e-3;
+  s.layout = RowLayout(3);
+  const auto stride = static_cast<std::size_t>(s.layout.stride());
+  s.rows.assign(2000 * stride, 0.0);
+  const Eigen::VectorXd rest = rest_at(arm, Vec3(0.2, 0, 0)).x1;
+  for (std::size_t k = 0; k < 2000; ++k) {
+    const auto row = std::span(s.rows).subspan(k * stride, stride);
+    const double t = 1e-3 * static_cast<double>(k), w = 2 * M_PI * 50;
+    Eigen::VectorXd x = rest;
+    x[0] += (k < 500 ? 5e-4 : 1e-4) * std::sin(w * t) + 0.1 * std::sin(2 * M_PI * t);
+    std::ranges::copy(x, s.layout.in(row, Column::device_position).begin());
+    s.layout.in(row, Column::contact_torque)[0] = k >= 1000 ? 0.1 : 0;
+  }
+  const double speed = 0.2 * 1e-4 * 2 * M_PI * 50 / std::sqrt(2.0);
+  EXPECT_NEAR(chatter_in_contact(s, arm), speed, 0.02 * speed);
+  s.rows.assign(2000 * stride, 0.0);
+  EXPECT_EQ(chatter_in_contact(s, arm), 0) << "nothing is touched";
+}
+
+Outcome made_live(LiveLaboratory&) {
+  Outcome outcome;
+  outcome.figure.title = "Made";
+  outcome.figure.caption = "By hand.";
+  outcome.figure.panels = {
+      {.title = "P", .series = {{"s", kHandInk, Series::Style::line, {{0, 0}, {1, 1}}}}}};
+  outcome.checks = {at_most("three at most four", 3, 4)};
+  return outcome;
+}
+
+// Files of a live experiment have names of their own, and tell of the device alone.
+TEST_F(LiveExperiments, LeaveFilesThatTheReportShows) {
+  const test::TempDir dir;
+  LiveLaboratory bench = lab({pressing});
+  const Outcome outcome = carry_out(LiveExperiment{"zwidth", "made", made_live}, bench, dir / ".");
+  EXPECT_EQ(outcome.figure.caption,
+            "By hand. Conditions: arm omni of 3 joints; limit of every motor: the arm's own, 0.45 "
+            "and 0.64 N m; tick 1 ms.");
+  EXPECT_FALSE(outcome.figure.made_by.empty());
+  for (const char* end : {".csv", ".png", ".svg", ".json"}) {
+    EXPECT_TRUE(std::filesystem::exists(dir / "." / (std::string("live-zwidth") + end))) << end;
+  }
+  write_report(dir / ".");
+  std::ostringstream page;
+  page << std::ifstream(dir / "report.html").rdbuf();
+  for (const char* words : {"1 of 1 experiments passed", "live-zwidth.svg",
+                            "the stiffest wall that does not vibrate in your hand", "By hand."}) {
+    EXPECT_NE(page.str().find(words), std::string::npos) << words;
+  }
 }
 
 }  // namespace

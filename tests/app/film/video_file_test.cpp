@@ -192,5 +192,65 @@ TEST_F(Videos, APictureOfAnotherSizeIsAMistake) {
   EXPECT_THROW(video.add(std::vector<unsigned char>(4 * 96 * 62)), std::invalid_argument);
 }
 
+// Players are told where a video comes from, how fast it goes and which colours it means.
+TEST_F(Videos, AnMp4SaysItsOriginRateAndColours) {
+  VideoFormat format = kSmall;
+  format.comment = "made by a test";
+  VideoFile video(dir_ / "a.mp4", format, false);
+  for (int i = 0; i < 50; ++i) video.add(halves(format, i % 2 == 0 ? kRed : kBlue, kGrey));
+  ASSERT_TRUE(video.finish(kGoOn, [](double) { FAIL() << "that is for a GIF"; }));
+  AVFormatContext* opened = nullptr;
+  checked(avformat_open_input(&opened, av_address(dir_ / "a.mp4").c_str(), nullptr, nullptr));
+  const auto close = [](AVFormatContext* f) { avformat_close_input(&f); };
+  const std::unique_ptr<AVFormatContext, decltype(close)> input(opened);
+  checked(avformat_find_stream_info(input.get(), nullptr));
+  const AVDictionaryEntry* comment = av_dict_get(input->metadata, "comment", nullptr, 0);
+  ASSERT_NE(comment, nullptr);
+  EXPECT_STREQ(comment->value, "made by a test");
+  ASSERT_EQ(input->nb_streams, 1u);
+  const AVStream& stream = *input->streams[0];
+  EXPECT_NEAR(av_q2d(stream.avg_frame_rate), 20, 1e-6);
+  EXPECT_EQ(stream.codecpar->color_space, AVCOL_SPC_BT709);
+  EXPECT_EQ(stream.codecpar->color_primaries, AVCOL_PRI_BT709);
+  EXPECT_EQ(stream.codecpar->color_trc, AVCOL_TRC_BT709);
+  EXPECT_EQ(stream.codecpar->color_range, AVCOL_RANGE_MPEG);
+  EXPECT_EQ(stream.codecpar->format, AV_PIX_FMT_YUV420P);
+}
+
+TEST_F(Videos, AGifTellsHowFarItsColoursAre) {
+  std::vector<double> parts;
+  {
+    VideoFile video(dir_ / "a.gif", kSmall, false);
+    for (int i = 0; i < 4; ++i) video.add(halves(kSmall, kRed, kGrey));
+    ASSERT_TRUE(video.finish(kGoOn, [&](double part) { parts.push_back(part); }));
+  }
+  ASSERT_EQ(parts.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(parts[i], 0.25 * static_cast<double>(i + 1), 1e-12);
+  }
+  // Stopped in between, nothing of it is left.
+  std::atomic<bool> stop{false};
+  {
+    VideoFile stopped(dir_ / "b.gif", kSmall, false);
+    for (int i = 0; i < 4; ++i) stopped.add(halves(kSmall, kRed, kGrey));
+    EXPECT_FALSE(stopped.finish(stop, [&](double) { stop = true; }));
+  }
+  EXPECT_THAT(left_there(), UnorderedElementsAre("a.gif"));
+}
+
+TEST(KindsOfVideos, AreToldByTheirNames) {
+  EXPECT_EQ(video_kind("a.mp4"), VideoKind::mp4);
+  EXPECT_EQ(video_kind("b/A.MP4"), VideoKind::mp4);
+  EXPECT_EQ(video_kind("a.Gif"), VideoKind::gif);
+  EXPECT_EQ(video_kind("pictures"), VideoKind::pictures);
+  EXPECT_EQ(video_kind("/"), VideoKind::pictures);
+  EXPECT_THROW(video_kind("a.mov"), FileError);
+  EXPECT_EQ(most_fps(VideoKind::gif), 50);
+  EXPECT_EQ(most_fps(VideoKind::mp4), 240);
+  EXPECT_EQ(most_fps(VideoKind::pictures), 240);
+  EXPECT_EQ(usual_fps(VideoKind::gif), 15);
+  EXPECT_EQ(usual_fps(VideoKind::mp4), 30);
+}
+
 }  // namespace
 }  // namespace limpid

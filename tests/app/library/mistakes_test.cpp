@@ -4,6 +4,7 @@
 #include <fstream>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 
 #include "tests/app/library/slide.h"
 #include "tests/support/temp_dir.h"
@@ -18,6 +19,14 @@ using test::slide;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
+
+// Positions are a view: those of a vector that nobody keeps would be gone before the tick.
+template <class T>
+constexpr bool kTaken = std::is_assignable_v<decltype(DeviceLoop::Reading::position)&, T>&&
+    std::is_assignable_v<decltype(SimulatedLoop::Hand::torque)&, T>;
+static_assert(!kTaken<std::vector<double>> && !kTaken<std::array<double, 3>>);
+static_assert(kTaken<std::vector<double>&> && kTaken<const std::array<double, 3>&>);
+static_assert(kTaken<std::span<double>> && kTaken<std::span<const double>>);
 
 TEST(DeviceLoop, TripsOnReadingsThatCannotBe) {
   const std::array<double, 1> x{0.004};
@@ -389,6 +398,60 @@ TEST(DeviceLoop, CountsMotorsThatAreNotSimulatedAsReal) {
   EXPECT_EQ(rest(loop, std::array{0.004}, 1), 0) << "nobody armed it";
 }
 
+TEST(SimulatedLoop, SaysWhatIsWrongWithAPath) {
+  const SimulatedLoop loop{LoopOptions{}};
+  const Point3 at = loop.tip();
+  const auto run = [&](std::vector<double> path, double duration = 0) {
+    return refusal([&] { loop.run(path, duration, [](std::span<const double>) { return true; }); });
+  };
+  const auto row = [&](double t) { return std::vector<double>{t, at[0], at[1], at[2]}; };
+  const auto rows = [&](std::initializer_list<double> times) {
+    std::vector<double> all;
+    for (const double t : times) {
+      const auto one = row(t);
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return all;
+  };
+  EXPECT_EQ(run(rows({0, 0.01})), "nothing");
+  EXPECT_EQ(run(row(0)), "path: has 4 numbers; needed: at least two rows of time [s], x, y, z [m]");
+  EXPECT_THAT(run({0, 0, 0, 0, 1, 0, 0}), StartsWith("path: has 7 numbers; "));
+  EXPECT_EQ(run(rows({5, 6, 6})), "path: row 3: time 6 follows time 6; needed: a later time");
+  std::vector<double> wrong = rows({0, 1});
+  wrong[5] = std::nan("");
+  EXPECT_EQ(run(wrong), "path: row 2: is not finite");
+  for (const double none : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THAT(run(rows({0, 0.01}), none), StartsWith("duration: "));
+  }
+  EXPECT_THAT(refusal([&] { loop.run(rows({0, 1}), 0, {}); }), HasSubstr("take: is empty"));
+  std::vector<double> far = rows({0, 1});
+  far[5] = 5;
+  EXPECT_NE(run(far), "nothing") << "out of reach";
+  // The run has a row for each tick of the path, from its own beginning; or those asked for.
+  const auto count = [&](double duration) {
+    return loop.run(rows({5, 5.02}), duration, [](std::span<const double>) { return true; }).rows;
+  };
+  EXPECT_EQ(count(0), 20u);
+  EXPECT_EQ(count(0.05), 50u);
+  int taken = 0;
+  EXPECT_EQ(loop.run(rows({0, 1}), 0, [&](std::span<const double>) { return ++taken < 7; }).rows,
+            7u);
+}
+
+TEST(DeviceLoop, TakesEachOfItsLimits) {
+  const auto refused = [](auto change) {
+    LoopOptions options = slide();
+    change(options.limits);
+    return refusal([&] { DeviceLoop(options, std::array{0.0}); });
+  };
+  EXPECT_EQ(refused([](LoopLimits&) {}), "nothing");
+  EXPECT_THAT(refused([](LoopLimits& of) { of.joint_speed = -1; }), HasSubstr("joint_speed: -1"));
+  EXPECT_THAT(refused([](LoopLimits& of) { of.tip_speed = -1; }), HasSubstr("tip_speed: -1"));
+  EXPECT_THAT(refused([](LoopLimits& of) { of.tip_force = -1; }), HasSubstr("tip_force: -1"));
+  EXPECT_THAT(refused([](LoopLimits& of) { of.energy = -1; }), HasSubstr("energy: -1"));
+  EXPECT_THAT(refused([](LoopLimits& of) { of.range = -1; }), HasSubstr("range: -1"));
+}
+
 TEST(Loops, SayWhyTheLawIsNotPassive) {
   LoopOptions options;
   options.settings = {"coupling.kind=proposed", "coupling.eta=0.1"};
@@ -428,6 +491,29 @@ TEST(ArmModel, RefusesNumbersThatAreNotFinite) {
   EXPECT_THAT(refused([&](auto& arm) { arm.joints[0].lower = -inf; }), HasSubstr("'a': lower"));
   EXPECT_THAT(refused([&](auto& arm) { arm.joints[0].inertia[2] = nan; }), HasSubstr("inertia"));
   EXPECT_THAT(refused([&](auto& arm) { arm.tip[1] = inf; }), HasSubstr("arm: tip: inf"));
+  using Spoil = std::function<void(ArmJoint&)>;
+  for (const auto& [what, spoil] : std::vector<std::pair<const char*, Spoil>>{
+           {"position", [&](ArmJoint& of) { of.position[2] = nan; }},
+           {"rpy", [&](ArmJoint& of) { of.rpy[0] = inf; }},
+           {"axis", [&](ArmJoint& of) { of.axis[1] = nan; }},
+           {"lower", [&](ArmJoint& of) { of.lower = nan; }},
+           {"upper", [&](ArmJoint& of) { of.upper = inf; }},
+           {"effort", [&](ArmJoint& of) { of.effort = inf; }},
+           {"damping", [&](ArmJoint& of) { of.damping = nan; }},
+           {"friction", [&](ArmJoint& of) { of.friction = inf; }},
+           {"mass", [&](ArmJoint& of) { of.mass = nan; }},
+           {"center", [&](ArmJoint& of) { of.center[0] = inf; }},
+           {"inertia", [&](ArmJoint& of) { of.inertia[5] = nan; }}}) {
+    EXPECT_THAT(refused([&](ArmModel& arm) { spoil(arm.joints[1]); }),
+                AllOf(StartsWith(std::string("arm: joint 'b': ") + what + ": "),
+                      testing::EndsWith("is not allowed; allowed: a finite number")));
+  }
+  for (const double none : {0.0, -1.0}) {
+    EXPECT_THAT(refused([&](ArmModel& arm) { arm.joints[0].effort = none; }),
+                AllOf(StartsWith("arm: joint 'a': effort "), HasSubstr("allowed: above 0")));
+  }
+  EXPECT_EQ(refused([&](ArmModel& arm) { arm.joints[0].effort = nan; }), "nothing")
+      << "Limpid chooses it";
 }
 
 }  // namespace

@@ -48,6 +48,16 @@ TEST(OnlyLooked, PassesOnReadingsAndNeverATorque) {
   EXPECT_EQ(seen->readings(), 1u);
 }
 
+TEST(OnlyLooked, NotesNothingBesideTheTimeThatCounts) {
+  int told = 0;
+  const auto seen = std::make_shared<DeviceSeen>();
+  seen->noting = false;
+  OnlyLooked device(std::make_unique<Noting>(told), seen);
+  DeviceReading reading;
+  EXPECT_TRUE(device.read(reading));
+  EXPECT_EQ(seen->readings(), 0u);
+}
+
 // Feeds readings at `rate` [Hz] that are looked at every millisecond.
 struct Looking {
   DeviceTraits traits = two_joints();

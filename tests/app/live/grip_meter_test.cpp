@@ -64,10 +64,16 @@ TEST_F(AGripMeter, MeasuresTheVirtualHandOnRequestAndEndsByItself) {
   EXPECT_TRUE(pushed_since());
   ASSERT_TRUE(pass(0, [&] { return !meter_.busy(); }));
   EXPECT_FALSE(pushed_since());
-  ASSERT_NE(meter_.found(), nullptr);
+  // A busy computer may have stopped the loop for a moment: it is measured again then.
+  ASSERT_TRUE(test::until([&] {
+    if (meter_.found() != nullptr && meter_.found()->grip.known()) return true;
+    session_.loop().arm();
+    EXPECT_TRUE(pass(0, [&] { return session_.loop().snapshot().arming == Arming::on; }));
+    meter_.begin(arm_, Scene{});
+    EXPECT_TRUE(pass(0, [&] { return !meter_.busy(); }));
+    return false;
+  }));
   const Grip& grip = meter_.found()->grip;
-  // A busy computer may have stopped the loop for a moment.
-  if (!grip.known()) GTEST_SKIP() << grip.unknown;
   EXPECT_NEAR(grip.stiffness.value, 520, 0.05 * 520);
   EXPECT_NEAR(grip.damping.value, 3, 0.05 * 3);
   EXPECT_NEAR(grip.mass.value, 0.1, 0.05 * 0.1);

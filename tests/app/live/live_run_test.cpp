@@ -8,6 +8,7 @@
 #include "tests/support/built_in.h"
 #include "tests/support/fake_device.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/until.h"
 
 namespace limpid {
 namespace {
@@ -101,12 +102,64 @@ TEST_F(ALiveRun, RecordsEveryTickInARow) {
 TEST_F(ALiveRun, SaysThatTheDeviceIsGone) {
   run_->pass(0.1, kNeverStops);
   here_ = false;
-  EXPECT_THROW(run_->pass(5, kNeverStops), std::runtime_error);
+  EXPECT_EQ(test::refusal<std::runtime_error>([&] { run_->pass(10, kNeverStops); }),
+            "the device is disconnected");
 }
 
 TEST_F(ALiveRun, EndsWhenItIsToldTo) {
   const std::atomic<bool> stop{true};
   EXPECT_FALSE(run_->pass(100, stop));
+}
+
+TEST_F(ALiveRun, HasTheSettingsAndTheSceneThatItIsGiven) {
+  const RowLayout layout(3);
+  double eta = 0, contact = 0;
+  const auto look = [&](std::span<const double> row) {
+    eta = layout.in(row, Column::eta)[0];
+    for (const double each : layout.in(row, Column::contact_torque)) {
+      contact = std::max(contact, std::abs(each));
+    }
+  };
+  run_->pass(0.1, kNeverStops, look);
+  EXPECT_EQ(eta, Parameters{}.eta);
+  EXPECT_EQ(contact, 0);
+  Parameters p = plan_.parameters;
+  p.eta = 0.625;
+  p.device_delay = 3;
+  run_->set(p);
+  EXPECT_EQ(run_->taken(p).device_delay, 0) << "a real device has its own";
+  run_->pass(0.1, kNeverStops, look);
+  EXPECT_EQ(eta, 0.625);
+  ASSERT_TRUE(gets_force(20));
+  Scene around;  // the tip is 2 cm deep in it from the next tick on
+  around.add(
+      {"floor", pose_at(rest_tip(plan_.arm) + Vec3(0, 0, 0.02)), Plane{Vec3::UnitZ()}, {100}});
+  run_->touch(around);
+  run_->pass(0.2, kNeverStops, look);
+  EXPECT_GT(contact, 0);
+}
+
+TEST_F(ALiveRun, MeasuresTheGripOnceItHasForce) {
+  const RowLayout layout(3);
+  ASSERT_TRUE(gets_force(20));
+  double pushed = 0;
+  const auto look = [&](std::span<const double> row) {
+    pushed = std::max(pushed, Vec3(layout.in(row, Column::excitation).data()).norm());
+  };
+  run_->pass(0.1, kNeverStops, look);
+  EXPECT_EQ(pushed, 0);
+  std::uint32_t asked = 0;
+  // A busy computer may take the force away meanwhile.
+  ASSERT_TRUE(test::until([&] {
+    if (!gets_force(20)) return false;
+    pushed = 0;
+    run_->measure_grip();
+    ++asked;
+    run_->pass(0.5, kNeverStops, look);
+    return run_->now().arming == Arming::on;
+  }));
+  EXPECT_GT(pushed, 0);
+  EXPECT_EQ(run_->now().probe, asked);
 }
 
 }  // namespace

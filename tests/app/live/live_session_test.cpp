@@ -1,6 +1,7 @@
 // A live session without a window: its lanes, its rows, and what becomes of recordings.
 #include "app/live/live_session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <set>
@@ -172,6 +173,79 @@ TEST_F(ALiveSession, CompletesARecordingAtItsEnd) {
   ASSERT_TRUE(some_ticks());
   session_.reset();
   EXPECT_GT(read_session(dir_ / "a.h5").size(), 20u);
+}
+
+// Nobody holds the arm of a new world, and time goes on as usual.
+TEST_F(ALiveSession, BeginsAWorldAsIfNobodyWereThere) {
+  ASSERT_TRUE(some_ticks());
+  Controls& controls = session_->controls();
+  controls.grab = controls.magnet = controls.paused = true;
+  controls.pull.body = 3;
+  controls.probe = 7;
+  controls.slow = 10;
+  controls.goal = Vec3(1, 2, 3);
+  Parameters p;
+  p.eta = 0.75;
+  session_->open(plan_.arm, plan_.document.scene, p, Vec3(0.18, 0.01, 0));
+  EXPECT_FALSE(controls.grab || controls.magnet || controls.paused);
+  EXPECT_EQ(controls.pull, BodyPull{});
+  EXPECT_EQ(controls.probe, 0u);
+  EXPECT_EQ(controls.slow, 1);
+  EXPECT_EQ(controls.goal, Vec3(0.18, 0.01, 0));
+  EXPECT_EQ(controls.parameters().eta, 0.75);
+  EXPECT_FALSE(session_->ticked());
+  EXPECT_EQ(session_->tick(), 0u);
+  ASSERT_EQ(session_->rows().size(), 1u);
+  const std::span<const double> nothing = session_->rows()[0];
+  EXPECT_TRUE(std::ranges::all_of(nothing, [](double number) { return number == 0; }));
+  ASSERT_TRUE(turn_until([this] { return session_->tick() > 20; }));
+  const std::span<const double> row = session_->rows()[0];
+  EXPECT_EQ(session_->loop().layout().in(row, Column::eta)[0], 0.75);
+  session_->open(plan_.arm, plan_.document.scene, p, std::make_unique<test::FakeDevice>(3));
+  EXPECT_EQ(controls.goal, rest_tip(plan_.arm));
+}
+
+TEST_F(ALiveSession, ForgetsAPullInAnotherState) {
+  session_->controls().pull = {1, Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  session_->touch(plan_.arm, plan_.document.scene);
+  EXPECT_EQ(session_->controls().pull, BodyPull{}) << "bodies may have other numbers";
+}
+
+TEST_F(ALiveSession, TellsTheWholeStoryOfARecording) {
+  record(dir_ / "a.h5");
+  EXPECT_TRUE(session_->opening_recording() && session_->recording());
+  EXPECT_FALSE(session_->closing());
+  EXPECT_EQ(session_->last_recording().file, dir_ / "a.h5");
+  bool began = false, ended = false;
+  ASSERT_TRUE(turn_until([&] {
+    began = began || news_.began;
+    return began && session_->loop().recorder()->rows() > 30;
+  }));
+  EXPECT_FALSE(session_->opening_recording());
+  EXPECT_TRUE(session_->recording());
+  EXPECT_FALSE(session_->last_recording().complete);
+  session_->stop_recording();
+  EXPECT_FALSE(session_->recording());
+  ASSERT_TRUE(turn_until([&] {
+    ended = ended || news_.ended;
+    return news_.complete;
+  }));
+  EXPECT_TRUE(ended);
+  EXPECT_FALSE(session_->closing());
+  const Recorded& last = session_->last_recording();
+  EXPECT_EQ(last.file, dir_ / "a.h5");
+  EXPECT_EQ(last.rows, read_session(dir_ / "a.h5").size());
+  EXPECT_EQ(last.dropped, 0u);
+  EXPECT_TRUE(last.complete);
+  EXPECT_EQ(last.trouble + last.failure, "");
+  const RunPlan plan = recorded();
+  session_->record(
+      std::make_unique<Recorder>(dir_ / "b.h5", session_info(plan), plan.settings(), false));
+  EXPECT_EQ(session_->last_recording().file, dir_ / "b.h5");
+  EXPECT_FALSE(session_->last_recording().complete) << "the last one's";
+  ASSERT_TRUE(turn_until([&] { return session_->loop().recorder()->rows() > 10; }));
+  session_->complete_recording();
+  EXPECT_GT(read_session(dir_ / "b.h5").size(), 10u);
 }
 
 }  // namespace

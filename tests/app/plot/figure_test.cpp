@@ -81,9 +81,13 @@ TEST_F(Figures, SayWhichTableCouldNotBeWritten) {
 }
 
 TEST_F(Figures, BecomeAPngAndAnSvgAndNothingElse) {
-  draw_figure(small(), dir_, "f");
-  EXPECT_EQ(read(dir_ / "f.png").substr(1, 3), "PNG");
-  const std::string svg = read(dir_ / "f.svg");
+  Figure figure = small();
+  figure.made_by = "limpid 9, seed 1";
+  draw_figure(figure, dir_, "f");
+  const std::string png = read(dir_ / "f.png"), svg = read(dir_ / "f.svg");
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_EQ(png.substr(8 + 25 + 4, 32), std::string("tEXtDescription\0limpid 9, seed 1", 32));
+  EXPECT_THAT(svg, HasSubstr("<metadata>limpid 9, seed 1</metadata>"));
   EXPECT_THAT(svg, HasSubstr("<svg"));
   EXPECT_THAT(svg, HasSubstr("time [s]"));
   EXPECT_EQ(std::distance(fs::directory_iterator(dir_), {}), 2);
@@ -300,6 +304,60 @@ TEST(GnuplotScript, DrawsIntoEachFileInItsSize) {
   EXPECT_THAT(script, testing::EndsWith("unset multiplot\nset output\n"));
   figure.panels[0].series.clear();
   EXPECT_THAT(script_of(figure), HasSubstr("plot NaN notitle"));
+}
+
+// Places in a panel of 640 by 420 px below a title of 52, counted from the lower left.
+TEST(GnuplotScript, PutsTitleLegendAndNamesOfAxesAroundTheCurves) {
+  const auto at = [](double x, double y) {
+    return fmt::format("screen {:.6f},{:.6f}", x / 640, y / 472);
+  };
+  Figure figure = small();
+  Series points{"dots", kHandInk, Series::Style::points, {{0, 1}}};
+  points.mark = 5;
+  figure.panels[0].series.push_back(points);
+  figure.panels[0].series.push_back({"gap", kContactInk, Series::Style::dashed, {{0, 1}, {1, 1}}});
+  const std::string script = script_of(figure);
+  // Axes are from 58 to 420 - 38 - 20.
+  const double top = 362, middle = (58 + top) / 2, line = top + 14;
+  // Entries: a sample of 26, 6, letters of 6.8, and 20 to the next one.
+  const double band = 92 + 52 + 4 * 6.8, dots = band + 52 + 4 * 6.8, gap = dots + 52 + 4 * 6.8;
+  for (const std::string& words :
+       {"set label 'Panel' at " + at(92, top + 40) + " left noenhanced font ',13'\n",
+        "set arrow from " + at(92, line) + " to " + at(118, line) +
+            fmt::format(" nohead lw 1.8 dt 1 lc rgb '{}'\n", kDeviceInk),
+        "set label 'line' at " + at(124, line) + " left noenhanced font ',11'\n",
+        "set object rectangle from " + at(band, line - 5) + " to " + at(band + 26, line + 5) +
+            fmt::format(" fc rgb '{}' fs transparent solid 0.2 noborder\n", kProxyInk),
+        "set label 'band' at " + at(band + 32, line) + " left",
+        "set label '' at " + at(dots + 13, line) +
+            fmt::format(" point pt 5 ps 0.6 lc rgb '{}'\n", kHandInk),
+        "set arrow from " + at(gap, line) + " to " + at(gap + 26, line) +
+            fmt::format(" nohead lw 1.8 dt (7,4) lc rgb '{}'\n", kContactInk),
+        "set label 'angle [rad]' at " + at(20, middle) + " center rotate by 90 noenhanced\n",
+        std::string("set xlabel 'time [s]' noenhanced offset 0,0.3\n"),
+        std::string("unset logscale x\nset format x '%g'\n"), std::string("unset colorbox\n"),
+        std::string("set multiplot title 'A figure'")}) {
+    EXPECT_THAT(script, HasSubstr(words));
+  }
+}
+
+TEST(GnuplotScript, PutsABarOfColoursBesideAMap) {
+  const auto at = [](double x, double y) { return fmt::format("{:.6f},{:.6f}", x / 640, y / 472); };
+  Figure figure = small();
+  Series map{"share", "", Series::Style::cells, {}, {{0, 1, 2, 4, 0.5}}};
+  figure.panels[0].series = {map};
+  const std::string script = script_of(figure);
+  // A map has no entry in the legend; its axes end at 536.
+  const double top = 420 - 38;
+  EXPECT_THAT(script, HasSubstr("set colorbox vertical user origin screen " + at(546, 58) +
+                                " size " + at(14, top - 58) + " noborder\n"));
+  EXPECT_THAT(script, HasSubstr("set cbrange [*:*]\nset format cb '%g'\n"));
+  EXPECT_THAT(script, HasSubstr("set label 'share' at screen " + at(618, (top + 58) / 2) +
+                                " center rotate by 90"));
+  EXPECT_THAT(script, HasSubstr("fc palette notitle"));
+  figure.panels[0].series[0].color = kHandInk;
+  EXPECT_THAT(script_of(figure), HasSubstr(fmt::format("fc rgb '{}'", kHandInk)));
+  EXPECT_THAT(script_of(figure), HasSubstr("unset colorbox\n"));
 }
 
 TEST_F(Figures, WriteTheMiddleOfCells) {

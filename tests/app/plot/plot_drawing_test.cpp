@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "app/plot/plot_export.h"
@@ -432,6 +433,64 @@ TEST_F(ADrawing, NamesLawsBelowAllEdges) {
   for (const char* name : {"predictive", "proposed"}) {
     EXPECT_GE(notes.said(name).at.y - 9, lowest) << name;
   }
+}
+
+// Names stand on a line of their own below the edges of all lanes, 4 px for each further one.
+TEST_F(ADrawing, HasNamesOnTheirLines) {
+  spec_.bands = {{.channel = 2, .names = {"standard", "", "predictive"}, .laws = true}};
+  EXPECT_EQ(draw().said("standard").at.y, 32 + 15);
+  spec_.bands.push_back({.channel = 1, .names = {"left", "right"}, .laws = true, .lane = 1});
+  spec_.bands.push_back({.channel = 1, .names = {"", "off"}, .striped = true});
+  const Notes notes = draw();
+  EXPECT_EQ(notes.said("standard").at.y, 32 + 15 + 4);
+  EXPECT_EQ(notes.said("predictive").at.y, 32 + 15 + 4);
+  EXPECT_EQ(notes.said("left").at.y, 32 + 15 + 4 + 14);
+  EXPECT_EQ(notes.said("off").at.y, 32 + 15 + 4 + 28);
+  EXPECT_NEAR(notes.said("standard").at.x, 56 + 3, 1);
+  EXPECT_NEAR(notes.said("predictive").at.x, x_of(2) + 3, 1);
+  EXPECT_NEAR(notes.said("right").at.x, x_of(4) + 3, 1);
+  ASSERT_EQ(notes.striped.size(), 1u);
+  EXPECT_NEAR(notes.striped[0].box.left, x_of(4), 1);
+  EXPECT_NEAR(notes.striped[0].box.width, x_of(8) - x_of(4), 1);
+  EXPECT_EQ(notes.striped[0].box.height, 286);
+}
+
+// A mark at the right end has its label left of it; thresholds take turns around their line.
+TEST_F(ADrawing, HasLabelsWhereThereIsRoom) {
+  history_.mark(9.95, "a long label", "key");
+  spec_.thresholds = {{7.5, "one"}, {7.5, "two"}, {7.5, "six"}};
+  const Notes notes = draw();
+  const auto& mark = notes.said("a long label");
+  EXPECT_EQ(mark.anchor, PlotCanvas::Anchor::end);
+  EXPECT_NEAR(mark.at.x, x_of(9.95) - 4, 1e-6);
+  EXPECT_EQ(mark.at.y, 318 - 5);
+  const double y = y_of(7.5);
+  for (const auto& [text, at, anchor] :
+       {std::tuple("one", PlotCanvas::Point{700, y - 4}, PlotCanvas::Anchor::end),
+        {"two", PlotCanvas::Point{700, y + 12}, PlotCanvas::Anchor::end},
+        {"six", PlotCanvas::Point{62, y - 4}, PlotCanvas::Anchor::start}}) {
+    EXPECT_NEAR(notes.said(text).at.x, at.x, 1e-6) << text;
+    EXPECT_NEAR(notes.said(text).at.y, at.y, 1e-6) << text;
+    EXPECT_EQ(notes.said(text).anchor, anchor) << text;
+  }
+}
+
+// Entries of 40 letters of 7.2 px: two in a row, and the area is as much lower.
+TEST_F(ADrawing, HasRowsOfItsLegend) {
+  std::vector<std::string> labels;
+  spec_.curves.clear();
+  for (const char letter : {'a', 'b', 'c'}) {
+    labels.emplace_back(40, letter);
+    spec_.curves.push_back({.label = labels.back()});
+  }
+  const Notes notes = draw();
+  EXPECT_EQ(notes.outlined.at(0).box.height, 286 - 14);
+  EXPECT_NEAR(notes.said(labels[0]).at.x, 56 + 23, 1e-6);
+  EXPECT_NEAR(notes.said(labels[1]).at.x, 56 + 23 + 40 * 7.2 + 17 + 23, 1e-6);
+  EXPECT_NEAR(notes.said(labels[2]).at.x, 56 + 23, 1e-6);
+  EXPECT_EQ(notes.said(labels[0]).at.y, 350 - 14);
+  EXPECT_EQ(notes.said(labels[1]).at.y, 350 - 14);
+  EXPECT_EQ(notes.said(labels[2]).at.y, 350);
 }
 
 TEST_F(ADrawing, OverAnotherChannelNamesBoth) {

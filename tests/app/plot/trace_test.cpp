@@ -132,5 +132,46 @@ TEST(Trace, AnEmptyHistoryLeavesNoTrace) {
   EXPECT_TRUE(trace_of(history, {.channel = 0}, pixel_window(10, 10, 100)).runs.empty());
 }
 
+// A row more on either side lets the line go on to the edge of its window.
+TEST(Trace, OfSamplesReachesBeyondBothEdges) {
+  History history({.channels = 2, .seconds = 20});
+  for (int i = 0; i < 100; ++i) {
+    history.append(i * T, std::array{0.5 * i, i == 30 ? std::nan("") : 1.0});
+  }
+  const PixelWindow window{1e-4, 205, 300};  // from 20.5 to 50.5 ms
+  const Trace trace = trace_of(history, {.channel = 0}, window);
+  EXPECT_FALSE(trace.band);
+  ASSERT_EQ(trace.runs.size(), 1u);
+  ASSERT_EQ(trace.points.size(), 32u);
+  for (std::size_t i = 0; i < trace.points.size(); ++i) {
+    EXPECT_NEAR(trace.points[i].x, 10 * static_cast<double>(i) - 5, 1e-3);
+    EXPECT_EQ(trace.points[i].low, 0.5f * static_cast<float>(20 + i));
+    EXPECT_EQ(trace.points[i].high, trace.points[i].low);
+  }
+  const Trace torn = trace_of(history, {.channel = 1}, window);
+  ASSERT_EQ(torn.runs.size(), 2u);
+  EXPECT_EQ(torn.runs[0].count, 10u) << "20 to 29";
+  EXPECT_EQ(torn.runs[1].first, 10u);
+  EXPECT_EQ(torn.runs[1].count, 21u) << "31 to 51";
+  // At the ends of the history there is no more.
+  EXPECT_EQ(trace_of(history, {.channel = 0}, {1e-4, -100, 2000}).points.size(), 100u);
+}
+
+// Each pixel has what its own samples have, and reaches half a step towards its neighbours.
+TEST(Trace, OfABandHasTheExtentOfEachPixel) {
+  History history({.channels = 1, .seconds = 20});
+  for (int i = 0; i < 100; ++i) {
+    history.append((i + 0.5) * T, std::array{i < 50 ? i % 2 + 0.0 : 10.0 + i % 2});
+  }
+  const Trace trace = trace_of(history, {.channel = 0}, {10 * T, 0, 12});
+  ASSERT_TRUE(trace.band);
+  ASSERT_EQ(trace.points.size(), 10u) << "nothing behind the end";
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_EQ(trace.points[i].x, static_cast<float>(i) + 0.5f);
+    EXPECT_EQ(trace.points[i].low, i < 5 ? 0 : i == 5 ? 5.5f : 10) << i;
+    EXPECT_EQ(trace.points[i].high, i < 4 ? 1 : i == 4 ? 5.5f : 11) << i;
+  }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -1,4 +1,5 @@
 // Fields of every table: their keys, ranges and readers.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -14,6 +15,7 @@ namespace limpid {
 namespace {
 
 using nlohmann::json;
+using testing::HasSubstr;
 
 BodyJoint hinge() {
   BodyJoint joint;
@@ -182,6 +184,29 @@ TEST(Fields, ComeBackAsTheNumbersOfAnAxis) {
     if (std::isnan(number_of(field, changed))) return;  // a text or a vector
     set_number(field, again, number_of(field, changed));
     expect_same(fields, again, changed);
+  });
+}
+
+TEST(Fields, SayWhichWordWasMeant) {
+  each_field([]<class Owner>(const auto& fields, const Field<Owner>& field, const Owner& owner) {
+    if (field.words.empty()) return;
+    const std::string word = field.words.back();
+    if (word.size() < 3) return;  // another one is as near
+    const auto said = [](const auto& read) -> std::string {
+      try {
+        read();
+      } catch (const std::exception& error) {
+        return error.what();
+      }
+      return "nothing";
+    };
+    Owner changed = owner;
+    EXPECT_THAT(said([&] { set_value(field, changed, word + "x"); }),
+                HasSubstr("; did you mean " + word + "?"));
+    const toml::table table{{field.key, word + "x"}};
+    const TomlTable t(table, "x.toml", "");
+    EXPECT_THAT(said([&] { read_fields(t, fields, changed, false); }),
+                HasSubstr("; did you mean " + word + "?"));
   });
 }
 

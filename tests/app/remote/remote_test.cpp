@@ -108,6 +108,13 @@ TEST_F(RemoteTest, SetsAllOrNothing) {
   EXPECT_TRUE(ask(R"({"do":"set","twin":true,"values":{"coupling.eta":2}})").contains("ok"));
   EXPECT_EQ(lanes[kTwinLane].eta, 2);
   EXPECT_NE(lanes[kMainLane].eta, 2);
+  for (const char* whose : {R"("twin":true)", R"("lane":1)"}) {
+    const std::string values = R"("values":{"coupling.eta":5,"hand.stiffness":555})";
+    const json refused = ask(R"({"do":"set",)" + std::string(whose) + "," + values + "}");
+    EXPECT_THAT(refused["error"].get<std::string>(),
+                HasSubstr("hand.stiffness: is one setting for all runs"));
+    EXPECT_EQ(lanes[kTwinLane].eta, 2) << "what is refused changes nothing";
+  }
   const std::string third = R"({"do":"set","lane":2,"values":{"coupling.eta":3}})";
   EXPECT_TRUE(ask(third).contains("error")) << "there is none";
   EXPECT_TRUE(ask(R"({"do":"set","lane":1.5,"values":{}})").contains("error"));
@@ -227,6 +234,23 @@ TEST_F(RemoteTest, SendsTheRowsOfEachRun) {
   all[2][0] = std::nan("");  // no third run
   remote->row(rows, 10);
   EXPECT_EQ(hear()["rows"], json({{10, 1.0, 2.0, nullptr}}));
+}
+
+TEST_F(RemoteTest, KnowsNoPlaceOfContactsThatAreNotThere) {
+  std::ranges::fill(layout.in(std::span(row), Column::contact_point), 0.0);
+  const auto forces = layout.in(std::span(row), Column::contact_force);
+  std::ranges::fill(forces, 0.0);
+  forces[4] = 7;  // of the second contact
+  start();
+  json wanted{nullptr, nullptr, nullptr, 0.0, 0.0, 0.0};
+  wanted.insert(wanted.end(), 6, nullptr);
+  const json values =
+      ask(R"({"do":"row","channels":["contact/point","contact/point.1"]})")["ok"]["values"];
+  EXPECT_EQ(values, json({{"contact/point", wanted}, {"contact/point.1", nullptr}}));
+  EXPECT_EQ(ask(R"({"do":"row"})")["ok"]["values"].at("contact/point.12"), nullptr);
+  ask(R"({"do":"follow","channels":["contact/point"]})");
+  pass(0);
+  EXPECT_EQ(hear()["rows"], json::array({{0, wanted}}));
 }
 
 // A channel has the same name live and recorded.

@@ -140,8 +140,10 @@ TEST_F(Served, RunsLanesBesideTheFirst) {
   EXPECT_TRUE(until([&] { return value("twin/coupling/eta") == 0.35; }));
   EXPECT_NE(value("coupling/eta"), 0.35);
   EXPECT_EQ(state()["lanes"], 2);
-  EXPECT_THAT(refused({{"do", "twin"}, {"values", {{"device.torque_limit", 0.5}}}}),
-              HasSubstr("device.torque_limit"));
+  EXPECT_THAT(refused({{"do", "twin"}, {"values", {{"ledger.energy", 0.02}}}}),
+              HasSubstr("ledger.energy"));
+  EXPECT_THAT(refused({{"do", "twin"}, {"values", {{"hand.stiffness", 444}}}}),
+              HasSubstr("hand.stiffness: is one setting for all runs"));
   ask({{"do", "twin"}, {"lane", 2}});
   EXPECT_EQ(state()["lanes"], 3);
   ask({{"do", "twin"}, {"on", false}});

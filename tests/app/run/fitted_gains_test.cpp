@@ -85,14 +85,34 @@ TEST(FittedGains, KeepCondition3AndTheMarginOfEta) {
 TEST(FittedGains, ReckonWithTheDelayThatWasMeasured) {
   for (const double damping : {0.004, 0.012, 0.5}) {
     ArmDescription arm = large_arm(damping);
+    const double prompt = fitted(arm).k_vc;
     arm.delay = 0.0021;
-    const Parameters p = fitted(arm, {}, *arm.delay);
-    EXPECT_LT(p.k_vc, fitted(arm).k_vc) << "which is for none";
+    const Parameters p = fitted(arm);
+    EXPECT_LT(p.k_vc, prompt);
     const Analysis a = analyze(arm, rest_pose(arm), p, std::nullopt);
     EXPECT_EQ(a.delay, 0.0021);
     EXPECT_TRUE(a.condition3.holds) << damping;
     EXPECT_LT(a.condition3.device_margin, 0.1 * damping) << damping;
   }
+}
+
+// A delay that is identified counts as one that the file assumes, and before it.
+TEST(FittedGains, TakeTheDelayOfTheFilesReadings) {
+  ArmDescription assumed = large_arm(0.5), identified = assumed;
+  assumed.assumed_delay = 0.003;
+  identified.delay = 0.003;
+  identified.assumed_delay = 0.001;
+  Parameters fast;
+  fast.tick = 0.0005;
+  for (const ArmDescription& arm : {assumed, identified}) {
+    const Parameters p = fitted_with_readings(arm, fast);
+    EXPECT_EQ(p.device_delay, 6) << "ticks of half a millisecond";
+    EXPECT_EQ(p.delay, 6);
+    const Analysis a = analyze(arm, rest_pose(arm), p, std::nullopt);
+    EXPECT_EQ(a.delay, 0.003);
+    EXPECT_TRUE(a.condition3.holds);
+  }
+  EXPECT_GT(fitted(assumed).k_vc, fitted(identified).k_vc) << "what is assumed has to be asked for";
 }
 
 // The arm is identified without damping.
@@ -266,6 +286,60 @@ TEST(FittedGains, SayWhatTheyAre) {
   EXPECT_THAT(fit_text(fitted(large_arm(0))),
               testing::AllOf(testing::HasSubstr("coupling.k_vc"), testing::HasSubstr("N m/rad"),
                              testing::HasSubstr("device.damping")));
+}
+
+// At another tick other gains suit an arm: those that come with it are for the chosen tick.
+TEST(FittedGains, ComeForTheChosenTick) {
+  const ArmDescription arm = large_arm(0.5);
+  for (const double tick : {0.001, 0.004}) {
+    Parameters chosen;
+    chosen.tick = tick;
+    Parameters p = chosen;
+    refit(p, nullptr, &arm);
+    const Parameters wanted = fitted(arm, chosen);
+    for (const char* key : kFittedKeys) {
+      const ParameterInfo& info = *find_parameter(key);
+      EXPECT_EQ(parameter_text(p, info), parameter_text(wanted, info)) << key;
+    }
+    EXPECT_EQ(p.tick, tick);
+    refit(p, &arm, nullptr);
+    EXPECT_EQ(p, chosen) << "the paper's again";
+  }
+}
+
+// b_vc = b_d/12, k_vc = 10/12 b_d/T, b_v = b_d and alpha = 35/12 b_d, in two digits on the safe
+// side.
+TEST(FittedGains, AreNamedWithTheirUnits) {
+  EXPECT_EQ(fit_text(fitted(large_arm(0.5))),
+            "coupling.k_vc 410 N m/rad, coupling.b_vc 0.041 N m s/rad, coupling.b_v 0.5 N m s/rad, "
+            "observer.alpha 1.4 N m s/rad");
+  Parameters damped;
+  damped.per_joint = true;
+  damped.damping = 0.25;
+  EXPECT_EQ(fit_text(damped),
+            "gains that grow with each joint's damping, device.damping 0.25 N m s/rad");
+}
+
+TEST(FittedGains, TakeReadingsInWholeTicksUpToTheLongestDelay) {
+  ArmDescription arm = test::omni();
+  arm.encoder_step = 2e-4;
+  arm.assumed_delay = 0.0026;
+  Parameters p;
+  p.eta = 0.3;
+  const Parameters q = with_readings_of(arm, p);
+  EXPECT_EQ(q.encoder_step, 2e-4);
+  EXPECT_EQ(q.device_delay, 3);
+  EXPECT_EQ(q.delay, 3) << "the law knows it";
+  EXPECT_EQ(q.eta, 0.3);
+  arm.assumed_delay = 1;
+  EXPECT_EQ(with_readings_of(arm, p).device_delay, kMostDelay);
+  p.tick = 0.01;
+  arm.assumed_delay = 0.02;
+  EXPECT_EQ(with_readings_of(arm, p).device_delay, 2);
+  p.encoder_step = 2e-4;
+  EXPECT_EQ(readings_text(arm, p),
+            "the arm's file says encoder steps of 0.2 mrad and a delay of 20 ms; the settings say "
+            "encoder steps of 0.2 mrad and no delay");
 }
 
 }  // namespace

@@ -226,5 +226,61 @@ TEST(Recorder, RefusesAtOnceWhatItCannotWrite) {
   EXPECT_EQ(test::file_bytes(dir / "a.h5"), "mine");
 }
 
+TEST(Recorder, SaysThatItEndedByItselfAndHowToSaveThePart) {
+  const test::TempDir dir;
+  const std::string file = (dir / "a.h5").string();
+  const RowLayout layout(3);
+  const std::size_t chunk = 8000 * static_cast<std::size_t>(layout.stride()) * sizeof(double);
+  const FileSizeLimit limit(2 * chunk + chunk / 8);
+  Recorder recorder(file, sample_info(3), Parameters{}, false);
+  EXPECT_FALSE(recorder.failed());
+  EXPECT_EQ(lock_note(recorder), recorder.is_locked() ? ""
+                                                      : file +
+                                                            ": the file system has no locks; no "
+                                                            "other program may record into this "
+                                                            "file");
+  const std::vector<double> row = sample_rows(layout, 0, 1);
+  for (int k = 0; k < 200'000 && recorder.push_waiting(row); ++k) continue;
+  ASSERT_TRUE(recorder.failed());
+  EXPECT_FALSE(recorder.push_waiting(row)) << "nobody waits for a recording that has failed";
+  EXPECT_EQ(why_it_ended(recorder), "the recording has ended by itself: " + recorder.error() +
+                                        "; `limpid recover " + file +
+                                        ".part` saves the recorded part");
+}
+
+// Two lanes' rows and settings, told apart in one file.
+TEST(Recorder, KeepsTheRowsAndChangesOfEachLaneApart) {
+  const test::TempDir dir;
+  SessionInfo info = sample_info(3);
+  info.beside = {""};
+  Recorder recorder(dir / "a.h5", info, std::vector<Parameters>(2), false);
+  const RowLayout layout(3);
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  EXPECT_EQ(recorder.lanes(), 2u);
+  EXPECT_EQ(recorder.stride(), 2 * stride);
+  Parameters p;
+  for (std::size_t k = 0; k < 700; ++k) {
+    if (k == 300) {
+      p.k_vc = 8;
+      EXPECT_TRUE(recorder.changed(p, kTwinLane));
+    }
+    std::vector<double> both = sample_rows(layout, k, 1);
+    const std::vector<double> twin = sample_rows(layout, 5000 + k, 1);
+    both.insert(both.end(), twin.begin(), twin.end());
+    ASSERT_TRUE(recorder.push_waiting(both));
+    EXPECT_EQ(recorder.newest(), k);
+  }
+  recorder.finish();
+  const Session session = read_session(dir / "a.h5");
+  ASSERT_EQ(session.lanes(), 2u);
+  const auto first = sample_rows(layout, 0, 700), twin = sample_rows(layout, 5000, 700);
+  EXPECT_TRUE(test::same_numbers(session.rows, first));
+  EXPECT_TRUE(test::same_numbers(session.lane(kTwinLane).rows, twin));
+  EXPECT_TRUE(session.changes.empty());
+  ASSERT_EQ(session.lane(kTwinLane).changes.size(), 1u);
+  EXPECT_EQ(session.lane(kTwinLane).changes[0].row, 300u);
+  EXPECT_EQ(session.lane(kTwinLane).changes[0].setting, "coupling.k_vc = 8.0");
+}
+
 }  // namespace
 }  // namespace limpid

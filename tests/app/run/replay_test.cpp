@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "app/base/version.h"
 #include "app/run/analysis.h"
+#include "app/run/program_build.h"
 #include "app/run/recorder.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "devices/files/config_file.h"
@@ -279,6 +281,62 @@ TEST(Replay, SaysWhereAFormerFilterMadeTheRows) {
   EXPECT_FALSE(says(1e-4, "")) << "recorded now";
   session.changes = {{20, "device.encoder_step = 1e-4"}, {30, "predictor.preset = \"fine\""}};
   EXPECT_TRUE(says(0, "preset = \"auto\"\n")) << "set while it ran";
+}
+
+TEST(Replay, TellsARecordingAllThatDecidesTheRun) {
+  RunPlan plan = test::plan("dial.toml", "dial.csv", 0.1);
+  plan.parameters.tick = 0.002;
+  plan.parameters.eta = 0.25;
+  plan.seed = 99;
+  plan.hand.source = "whose hand";
+  Lane& twin = plan.beside.emplace_back();
+  twin.parameters.kind = CouplingKind::tank;
+  const SessionInfo info = session_info(plan);
+  EXPECT_EQ(info.tick, 0.002);
+  EXPECT_EQ(info.dof, 3);
+  EXPECT_EQ(info.app_version, program_version());
+  EXPECT_EQ(info.build, program_build());
+  EXPECT_EQ(info.seed, 99u);
+  EXPECT_EQ(info.source, "whose hand");
+  EXPECT_EQ(info.device_urdf, plan.arm.urdf);
+  EXPECT_EQ(info.scene, plan.document.toml);
+  EXPECT_EQ(info.models.size(), plan.document.models.size());
+  ASSERT_TRUE(info.arm);
+  EXPECT_EQ(info.arm->name, plan.arm.name);
+  std::vector<std::string> bodies;
+  for (const Object& object : plan.document.scene.objects) {
+    if (object.body) bodies.push_back(object.name);
+  }
+  EXPECT_FALSE(bodies.empty());
+  EXPECT_EQ(info.bodies, bodies);
+  Parameters read;
+  apply_config_text(read, info.config, "config");
+  EXPECT_EQ(read, plan.parameters);
+  ASSERT_EQ(info.beside.size(), 1u);
+  Parameters beside;
+  apply_config_text(beside, info.beside[0], "config");
+  EXPECT_EQ(beside, twin.parameters);
+}
+
+// A lane may start with bodies of its own, or as the first one does.
+TEST(Replay, TellsTheStartOfEachLane) {
+  const test::TempDir dir;
+  RunPlan plan = test::plan("table.toml", "touch.csv", 0.1);
+  plan.start = rest_at(plan.arm, plan.hand.at(0));
+  plan.start->world = {1, 2, 3};
+  plan.beside.resize(2);
+  plan.beside[1].start = plan.start;
+  plan.beside[1].start->world = {4};
+  SessionInfo info = session_info(plan);
+  info.bodies = {"die"};
+  Recorder recorder(dir / "a.h5", info, plan.settings(), false);
+  tell_start(recorder, plan);
+  ASSERT_TRUE(recorder.push(std::vector<double>(recorder.stride(), 0.0)));
+  recorder.finish();
+  const Session session = read_session(dir / "a.h5");
+  EXPECT_EQ(session.world, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(session.lane(1).world, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(session.lane(2).world, (std::vector<double>{4}));
 }
 
 }  // namespace

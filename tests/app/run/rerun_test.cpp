@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tests/app/run/recorded.h"
@@ -86,6 +87,88 @@ TEST_F(ARerun, SaysForHowLongMotorsAreAtTheirLimit) {
   EXPECT_GT(limited, 0u);
   EXPECT_NEAR(weak.at_limit, 1e-3 * static_cast<double>(limited), 1e-9);
   EXPECT_EQ(run_once_more(session_, "a.h5", before_, stop, [](double) {}).at_limit, 0);
+}
+
+// Largest |x_E| [mrad], largest |f2| [N m] and highest E_c [J] of rows.
+std::array<double, 3> figures_in(const test::Rows& rows) {
+  std::array<double, 3> most{};
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Eigen::VectorXd error =
+        rows.vec(k, Column::device_position) - rows.vec(k, Column::proxy_position);
+    most[0] = std::max(most[0], 1e3 * error.norm());
+    most[1] = std::max(most[1], rows.vec(k, Column::contact_torque).norm());
+    most[2] = std::max(most[2], rows.at(k, Column::energy_total));
+  }
+  return most;
+}
+
+void expect_figures(const RunFigures& found, const test::Rows& rows) {
+  const std::array<double, 3> wanted = figures_in(rows);
+  EXPECT_NEAR(found.error, wanted[0], 1e-9 * wanted[0]);
+  EXPECT_NEAR(found.contact, wanted[1], 1e-9 * wanted[1]);
+  EXPECT_NEAR(found.energy, wanted[2], 1e-9);
+  EXPECT_STREQ(found.error_unit, "mrad");
+  EXPECT_STREQ(found.contact_unit, "N m");
+}
+
+TEST_F(ARerun, FollowsTheChangesOfTheRecordingAndHasTheFiguresOfBoth) {
+  RunPlan plan = test::plan("table.toml", "touch.csv", 1.5);
+  plan.changes = {{500, "coupling.kind = \"standard\""}, {800, "coupling.eta = 2.0"}};
+  const Session session = test::recorded(plan, dir_ / "b.h5");
+  const Parameters own = session_parameters(session, "b.h5");
+  const std::atomic<bool> stop = false;
+  std::vector<double> parts;
+  const auto at = [&](double now) { parts.push_back(now); };
+  const RerunRows same = run_once_more(session, "b.h5", own, stop, at);
+  ASSERT_EQ(same.settings.size(), 3u);
+  EXPECT_EQ(same.settings[0].row, 0u);
+  EXPECT_EQ(same.settings[0].parameters, own);
+  EXPECT_EQ(same.settings[1].row, 500u);
+  EXPECT_EQ(same.settings[1].parameters.kind, CouplingKind::standard);
+  EXPECT_EQ(same.settings[1].parameters.eta, own.eta);
+  EXPECT_EQ(same.settings[2].row, 800u);
+  EXPECT_EQ(same.settings[2].parameters.eta, 2);
+  ASSERT_EQ(parts.size(), session.size());
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    ASSERT_NEAR(parts[k], static_cast<double>(k + 1) / static_cast<double>(parts.size()), 1e-12);
+  }
+  EXPECT_EQ(same.name, "re-run: as recorded");
+  EXPECT_EQ(same.recorded, "recorded") << "one setting is not the name of all of it";
+  EXPECT_EQ(same.figures.name, same.name);
+  EXPECT_EQ(same.recorded_figures.name, same.recorded);
+  EXPECT_EQ(same.note, "") << "this build recorded it";
+  EXPECT_EQ(same.arm.name, plan.arm.name);
+  EXPECT_EQ(same.end.rows, session.size());
+  expect_figures(same.figures, test::rows_of(session));
+  Parameters softer = own;
+  softer.k_vc = 5;
+  const RerunRows other = run_once_more(session, "b.h5", softer, stop, at);
+  test::Rows rows(session.layout);
+  rows.add(other.rows);
+  ASSERT_EQ(rows.size(), session.size());
+  EXPECT_GT(figures_in(rows)[0], figures_in(test::rows_of(session))[0]);
+  expect_figures(other.figures, rows);
+  expect_figures(other.recorded_figures, test::rows_of(session));
+}
+
+// A picture of both runs has as many rows of each.
+TEST_F(ARerun, StandsStillFromWhereItBecameUnstable) {
+  const std::atomic<bool> stop = false;
+  Parameters wild = before_;
+  set_parameter(wild, "coupling.kind", std::string("standard"));
+  wild.k_vc = 1e5;
+  wild.torque_limit = 1e4;
+  const RerunRows again = run_once_more(session_, "a.h5", wild, stop, [](double) {});
+  ASSERT_TRUE(again.end.diverged);
+  ASSERT_LT(again.end.rows, session_.size());
+  ASSERT_EQ(again.rows.size(), session_.rows.size());
+  const auto stride = static_cast<std::size_t>(session_.layout.stride());
+  const auto row = [&](std::size_t k) { return std::span(again.rows).subspan(k * stride, stride); };
+  const std::size_t last = again.end.rows - 1;
+  for (std::size_t k = last + 1; k < session_.size(); ++k) {
+    ASSERT_TRUE(test::same_numbers(row(k), row(last))) << k;
+  }
+  EXPECT_FALSE(test::same_numbers(row(last), row(last - 1)));
 }
 
 }  // namespace

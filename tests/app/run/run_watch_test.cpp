@@ -4,11 +4,13 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "devices/files/session/hdf5_reading.h"
+#include "tests/app/run/recorded.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_session.h"
@@ -33,6 +35,7 @@ class Watched {
       std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
       layout.in(std::span(row), Column::time)[0] = 0.001 * static_cast<double>(rows);
       layout.in(std::span(row), Column::energy_total)[0] = energy_;
+      layout.in(std::span(row), Column::energy_port)[0] = given;
       layout.in(std::span(row), Column::motor_torque)[0] = torque;
       layout.in(std::span(row), Column::commanded_torque)[0] = torque;
       layout.in(std::span(row), Column::device_velocity)[0] = speed;
@@ -45,6 +48,7 @@ class Watched {
   RunWatch watch;
   std::uint64_t rows = 0;
   double speed = 0;  // speed of the first joint [rad/s]
+  double given = 0;  // to the hand [J]
 
  private:
   double energy_ = 0;  // [J]
@@ -67,6 +71,29 @@ TEST(RunWatch, TakesAMillijouleForNoise) {
   Watched run;
   run.go_to(0.9e-3, 100);
   EXPECT_THAT(run.watch.warnings(), IsEmpty());
+}
+
+// Energy bounding promises nothing of E_c, which the device's damping takes up.
+TEST(RunWatch, JudgesALawOfThePortByWhatTheHandIsGiven) {
+  Parameters p;
+  p.kind = CouplingKind::eba;
+  Watched run(p);
+  run.go_to(0.05, 100);
+  EXPECT_THAT(run.watch.warnings(), IsEmpty());
+  run.given = 0.003;
+  run.go_to(0.05, 1);
+  EXPECT_THAT(run.watch.warnings(),
+              ElementsAre("the hand was given 3 mJ, above the limit since t = 0.101 s: this run is "
+                          "not passive (eba)"));
+
+  // A law that follows is not blamed for what came before, and is for its own.
+  Watched changed(p);
+  Parameters standard;
+  standard.kind = CouplingKind::standard;
+  changed.watch.change(101, standard);
+  changed.go_to(0.05, 1000);
+  EXPECT_THAT(changed.watch.warnings(), testing::Contains(HasSubstr("E_c rose to 45 mJ")));
+  EXPECT_THAT(changed.watch.warnings(), testing::Contains(HasSubstr("(standard)")));
 }
 
 TEST(RunWatch, CountsFromTheFirstRowOfARecording) {
@@ -261,6 +288,107 @@ TEST(RunWatch, LeavesItsWordsInTheRecording) {
   EXPECT_EQ(words, warnings_of_run(plan));
   EXPECT_EQ(hdf5::read_text(hdf5::open_to_read(file).get(), "warnings", file),
             warnings_text(words));
+}
+
+// The first motor gives all that it can for a hundred ticks.
+TEST(RunWatch, SaysWhatShareOfTheEnergyIsTheCouplingsOwn) {
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  Watched run(p);
+  run.go_to(0.1, 100, test::omni().joints[0].effort);
+  run.go_to(0.12, 16);
+  EXPECT_NEAR(run.watch.at_limit(), 0.1, 1e-12) << "a hundred ticks of 1 ms";
+  // The limit's share ends with row 100. Then E_c rises by 1.25 mJ a tick; 5 mJ may be given, and
+  // 1 mJ is noise.
+  EXPECT_THAT(
+      run.watch.warnings(),
+      ElementsAre("the coupling by itself gave 20 mJ (E_c rose to 0.12 J, with changes of "
+                  "settings, motors at their limit and force held back), more than the 5 mJ "
+                  "that the energy account allows, above the limit since t = 0.105 s: this "
+                  "run is not passive (predictive, eta 1)"));
+}
+
+TEST(RunWatch, NamesTheSettingsUnderWhichTheLimitWasPassed) {
+  Watched run;
+  run.go_to(-0.1, 10);
+  Parameters p;
+  p.kind = CouplingKind::standard;
+  run.watch.change(11, p);
+  run.go_to(-0.1, 400);
+  run.go_to(0.2, 240);
+  p.eta = 7;
+  run.watch.change(1000, p);
+  run.go_to(0.2, 400);
+  EXPECT_THAT(run.watch.warnings(),
+              ElementsAre("E_c rose to 0.2 J, above the limit since t = 0.491 s: this run is not "
+                          "passive (standard)"));
+}
+
+TEST(RunWatch, SaysFirstThatALoopIsUnstable) {
+  Watched run;
+  run.go_to(15, 100);
+  run.speed = 2e6;
+  run.go_to(15, 1);
+  const auto warnings = run.watch.warnings();
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0],
+            "unstable since t = 0.101 s: the speed of the device's joint 1 became larger than 1000 "
+            "rad/s");
+  EXPECT_EQ(run.watch.cautions(), std::vector{warnings[1]});
+}
+
+TEST(RunWatch, TellsTimeAtTheLimitOfEachLane) {
+  EXPECT_EQ(at_limit_text({}), "");
+  EXPECT_EQ(at_limit_text(std::vector{0.0}), "");
+  EXPECT_EQ(at_limit_text(std::vector{0.25}),
+            "motors at their limit    0.25 s; in this time device and proxy may drift apart\n");
+  EXPECT_EQ(at_limit_text(std::vector{1.5, 0.0, 0.125}),
+            "motors at their limit    1.5 s in the first run; in this time device and proxy may "
+            "drift apart\n"
+            "motors at their limit    0.125 s in the third run; in this time device and proxy may "
+            "drift apart\n");
+  std::vector<std::string> all;
+  add_warnings({"a", "b"}, kMainLane, all);
+  add_warnings({"c"}, kTwinLane, all);
+  EXPECT_THAT(all, ElementsAre("a", "b", "the second run: c"));
+  EXPECT_EQ(warnings_text(all), "a\nb\nthe second run: c");
+}
+
+// A recording is watched in pieces, under the settings of each lane and their changes.
+TEST(RunWatch, WatchesEachLaneOfARecordingUnderItsSettings) {
+  const test::TempDir dir;
+  RunPlan plan = test::plan("table.toml", "touch.csv", 2);
+  plan.parameters.kind = CouplingKind::standard;
+  plan.beside.push_back({plan.parameters, {{700, "device.torque_limit = 0.03"}}});
+  plan.beside[0].parameters.torque_limit = 0.02;
+  const Session session = test::recorded(plan, dir / "a.h5");
+  SessionWatch watch(session, "a.h5");
+  std::vector<double> wanted(2);
+  const auto limit = [&](std::size_t lane, std::size_t k) {
+    return lane == 0 ? plan.arm.joints[0].effort : k < 700 ? 0.02 : 0.03;
+  };
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  for (std::size_t k = 0; k < session.size(); k += 500) {
+    std::vector<std::span<const double>> piece;
+    for (std::size_t lane = 0; lane < 2; ++lane) {
+      piece.push_back(std::span(session.lane(lane).rows).subspan(k * stride, 500 * stride));
+    }
+    watch.take(piece);
+  }
+  for (std::size_t lane = 0; lane < 2; ++lane) {
+    for (std::size_t k = 0; k < session.size(); ++k) {
+      const auto torque = session.lane(lane).at(k, Column::motor_torque);
+      const double most = limit(lane, k) * (1 - 1e-9);
+      const bool at =
+          std::ranges::any_of(torque, [&](double each) { return std::abs(each) >= most; });
+      wanted[lane] += at ? 1e-3 : 0;
+    }
+  }
+  EXPECT_EQ(wanted[0], 0);
+  EXPECT_GT(wanted[1], 0);
+  ASSERT_EQ(watch.at_limit().size(), 2u);
+  EXPECT_NEAR(watch.at_limit()[0], wanted[0], 1e-9);
+  EXPECT_NEAR(watch.at_limit()[1], wanted[1], 1e-9);
 }
 
 }  // namespace

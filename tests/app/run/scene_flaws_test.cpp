@@ -4,14 +4,17 @@
 #include <gmock/gmock.h>
 
 #include "app/run/analysis.h"
+#include "app/run/scene_meshes.h"
 #include "app/run/tip_limits.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
 #include "tests/support/built_in.h"
+#include "tests/support/meshes.h"
 
 namespace limpid {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -34,7 +37,8 @@ Object floor_at(double z) { return {.pose = pose_at(Vec3(0, 0, z)), .shape = Pla
 TEST(SceneFlaws, AreNoneInTheScenesThatComeAlong) {
   for (const auto& entry : std::filesystem::directory_iterator(test::assets_dir() / "scenes")) {
     if (entry.path().extension() != ".toml") continue;
-    const SceneDocument document = read_scene(entry.path(), test::omni());
+    SceneDocument document = read_scene(entry.path(), test::omni());
+    build_meshes(document);
     EXPECT_THAT(scene_flaws(document.scene, test::omni(), under(CouplingKind::predictive)),
                 IsEmpty())
         << entry.path();
@@ -72,15 +76,38 @@ TEST(SceneFlaws, AreWallsStifferThanTheLawRenders) {
   }
 }
 
-TEST(SceneFlaws, AreThingsInWhichTheTipIsAtTheStart) {
+Vec3 tip_at_start() {
   const Arm<kAnyDof> arm(test::omni());
   Arm<kAnyDof>::Frames f;
   arm.frames(rest_pose(test::omni()), f);
-  const Vec3 tip = arm.tip(f);
+  return arm.tip(f);
+}
+
+TEST(SceneFlaws, AreThingsInWhichTheTipIsAtTheStart) {
+  const Vec3 tip = tip_at_start();
   const Object around{.pose = pose_at(tip), .shape = Sphere{0.012}};
   EXPECT_THAT(flaws(around), ElementsAre(HasSubstr("12 mm inside")));
   EXPECT_THAT(flaws({.pose = pose_at(tip + Vec3(0, 0, 0.0121)), .shape = Sphere{0.012}}),
               IsEmpty());
+}
+
+TEST(SceneFlaws, AreModelsAndBodiesInWhichTheTipIsAtTheStart) {
+  const Vec3 tip = tip_at_start();
+  const auto ball_at = [&](double above) {
+    Object ball = test::obstacle(
+        test::icosphere(3).mapped([](const Vec3& p) { return Vec3(0.012 / p.norm() * p); }));
+    ball.pose = pose_at(tip + Vec3(0, 0, above));
+    return ball;
+  };
+  EXPECT_THAT(flaws(ball_at(0.007)), ElementsAre(ContainsRegex("the tip is (4.9|5).* mm inside")));
+  EXPECT_THAT(flaws(ball_at(0.0125)), IsEmpty());
+  Object box{.pose = pose_at(tip - Vec3(0, 0, 0.01)), .shape = Box{Vec3::Constant(0.04)}};
+  box.body = Body{.mass = 0.1};
+  EXPECT_THAT(flaws(box), ElementsAre(HasSubstr("the tip is 10 mm inside")));
+  box.pose = pose_at(tip - Vec3(0, 0, 0.0205));
+  EXPECT_THAT(flaws(box), IsEmpty());
+  box.parts = {{.pose = pose_at(Vec3(0, 0, 0.0205)), .shape = Sphere{0.01}}};
+  EXPECT_THAT(flaws(box), ElementsAre(HasSubstr("the tip is 10 mm inside"))) << "a part of it";
 }
 
 }  // namespace

@@ -130,5 +130,73 @@ TEST(Simulate, SaysWhenTheLoopIsUnstable) {
   EXPECT_LT(end.rows, 20000u);
 }
 
+// A run that no clock paces is never late; each tick takes some time.
+TEST(Simulate, SaysHowLateAndHowLongEachTickWas) {
+  double longest = 0;
+  simulate(plan("table.toml", "touch.csv", 0.2), {}, [&](std::span<const double> row, LaneChanges) {
+    EXPECT_EQ(RowLayout(3).in(row, Column::wake_latency)[0], 0);
+    const double took = RowLayout(3).in(row, Column::compute)[0];
+    EXPECT_GE(took, 0);
+    longest = std::max(longest, took);
+    return true;
+  });
+  EXPECT_GT(longest, 0);
+  EXPECT_LT(longest, 10);
+}
+
+TEST(Simulate, ExcitesTheTipAsLongAsThePlanSays) {
+  RunPlan p = plan("free.toml", "free.csv", 0.1);
+  const Rows calm = rows_of(p);
+  for (int k = 0; k < 50; ++k) p.excitation.emplace_back(0.01 * k, -0.1, 0.2);
+  const Rows rows = rows_of(p);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Vec3 wanted = k < 50 ? Vec3(0.01 * static_cast<double>(k), -0.1, 0.2) : Vec3(0, 0, 0);
+    ASSERT_EQ(Vec3(rows.vec(k, Column::excitation)), wanted) << k;
+  }
+  EXPECT_EQ(calm.vec(50, Column::excitation).norm(), 0);
+  EXPECT_GT((rows.vec(50, Column::device_position) - calm.vec(50, Column::device_position)).norm(),
+            1e-5);
+}
+
+// Force is wanted as the plan has it at each row, and from its end on as at its last one.
+TEST(Simulate, ArmsAndCutsAtTheRowsOfThePlan) {
+  RunPlan p = plan("free.toml", "free.csv", 0.4);
+  for (int k = 0; k < 300; ++k) p.force.push_back(k < 100 || k >= 200);
+  const Rows rows = rows_of(p);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    ASSERT_EQ(rows.at(k, Column::force_wanted), k >= 100 && k < 200 ? 0 : 1) << k;
+  }
+  p.force = {true, false};
+  EXPECT_EQ(rows_of(p).at(399, Column::force_wanted), 0);
+}
+
+TEST(Simulate, FollowsTheHandsGrip) {
+  RunPlan p = plan("free.toml", "free.csv", 0.2);
+  p.hand = hand_through({0, 0.05, 0.2}, {Vec3(0.19, 0, 0), Vec3(0.2, 0, 0), Vec3(0.18, 0, 0)}, "x");
+  p.hand.grip[1] = 0;
+  const Rows rows = rows_of(p);
+  for (const std::size_t k : {0, 10, 40, 60, 150}) {
+    EXPECT_EQ(rows.at(k, Column::hand_grip), k < 50 ? 1 : 0) << k;
+    EXPECT_LT((Vec3(rows.vec(k, Column::hand_target)) - p.hand.sample(k, 1e-3)).norm(), 1e-12) << k;
+  }
+}
+
+TEST(Simulate, CountsTicksToTheNearestAndAtLeastOne) {
+  EXPECT_EQ(ticks_in(1, 0.001), 1000u);
+  EXPECT_EQ(ticks_in(0.0014, 0.001), 1u);
+  EXPECT_EQ(ticks_in(0.0016, 0.001), 2u);
+  EXPECT_EQ(ticks_in(0, 0.001), 1u);
+}
+
+TEST(Simulate, IgnoresSettingsOfOlderRecordingsAndRefusesKeysThatNeverWere) {
+  Parameters p;
+  apply_change(p, {0, "predictor.preset = \"fine\""});
+  EXPECT_EQ(p, Parameters{});
+  EXPECT_THROW(apply_change(p, {0, "coupling.zeta = "}), ParameterError);
+  p.torque_limit = 3;
+  apply_change(p, {0, "device.torque_limit = "});
+  EXPECT_TRUE(std::isnan(p.torque_limit));
+}
+
 }  // namespace
 }  // namespace limpid

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "devices/files/urdf_file.h"
 #include "tests/support/random_arm.h"
 
@@ -69,6 +73,82 @@ TEST(UrdfOfAnArm, HasNoMotorThatBearsMoreThanItGives) {
   arm.joints[0].warming = 60;
   const ArmDescription read = parse_urdf(urdf_text(arm, ""), "text", {});
   EXPECT_DOUBLE_EQ(read.joints[0].continuous, read.joints[0].effort);
+}
+
+// Shapes of the base and of links, each with numbers of its own.
+TEST(UrdfOfAnArm, HasItsShapesButNotThoseThatStandForOthers) {
+  ArmDescription arm = test::random_arm(2, 93);
+  arm.visuals.clear();
+  const auto add = [&](int link, Visual::Shape shape, const Vec3& size) {
+    const double turn = 0.1 * static_cast<double>(arm.visuals.size() + 1);
+    Visual visual{.link = link, .shape = shape, .size = size};
+    visual.origin.linear() = Eigen::AngleAxisd(turn, Vec3(1, 2, 2) / 3).toRotationMatrix();
+    visual.origin.translation() = Vec3(turn, -turn, 2 * turn);
+    arm.visuals.push_back(visual);
+  };
+  add(-1, Visual::Shape::box, Vec3(0.01, 0.02, 0.03));
+  add(0, Visual::Shape::cylinder, Vec3(0.04, 0.05, 1));
+  add(0, Visual::Shape::stand_in, Vec3(7, 7, 7));
+  add(1, Visual::Shape::sphere, Vec3(0.06, 1, 1));
+  add(1, Visual::Shape::box, Vec3(0.07, 0.08, 0.09));
+  const ArmDescription read = parse_urdf(urdf_text(arm, ""), "text", {});
+  std::erase_if(arm.visuals,
+                [](const Visual& each) { return each.shape == Visual::Shape::stand_in; });
+  ASSERT_EQ(read.visuals.size(), arm.visuals.size());
+  for (std::size_t i = 0; i < arm.visuals.size(); ++i) {
+    const Visual &a = arm.visuals[i], &b = read.visuals[i];
+    EXPECT_EQ(b.link, a.link) << i;
+    EXPECT_EQ(b.shape, a.shape) << i;
+    EXPECT_EQ(b.size, a.size) << i;
+    EXPECT_LT((b.origin.matrix() - a.origin.matrix()).norm(), 1e-9) << i;
+  }
+}
+
+TEST(UrdfOfAnArm, NamesTheFilesOfItsMeshes) {
+  ArmDescription arm = test::random_arm(1, 94);
+  arm.visuals = {{.link = 0, .mesh = "/models/a & b.glb", .size = Vec3(2, -3, 4)}};
+  const std::string text = urdf_text(arm, "");
+  EXPECT_NE(text.find("<mesh filename=\"/models/a &amp; b.glb\" scale=\"2 -3 4\"/>"),
+            std::string::npos)
+      << text;
+}
+
+// The writer's own links are called base and tip, and a comment ends at two hyphens.
+TEST(UrdfOfAnArm, IsReadWhateverItsLinksAndItsRemarkAre) {
+  ArmDescription arm = test::random_arm(3, 95);
+  arm.links[0].name = "base";
+  arm.links[1].name = "tip";
+  arm.links[2].name = "hand";
+  const std::string text = urdf_text(arm, "one -- two --- three");
+  EXPECT_EQ(text.find("--"), text.find("<!--") + 2);
+  EXPECT_EQ(text.find("--", text.find("<!--") + 4), text.find("-->")) << text;
+  EXPECT_NE(text.find("one - - two - - - three"), std::string::npos) << text;
+  const ArmDescription read = parse_urdf(text, "text", {});
+  ASSERT_EQ(read.dof(), 3);
+  EXPECT_EQ(read.links[0].name, "base_link");
+  EXPECT_EQ(read.links[1].name, "tip_link");
+  EXPECT_EQ(read.links[2].name, "hand");
+  EXPECT_LT((read.tip.matrix() - arm.tip.matrix()).norm(), 1e-9);
+  EXPECT_EQ(read.tip_link, "tip");
+}
+
+// A file says of an arm only what somebody knows.
+TEST(UrdfOfAnArm, SaysNothingThatIsNotKnown) {
+  ArmDescription arm = test::random_arm(2, 96);
+  for (Joint& joint : arm.joints) joint.spring = joint.offset = joint.continuous = 0;
+  arm.delay.reset();
+  arm.encoder_step = arm.assumed_delay = 0;
+  const std::string text = urdf_text(arm, "");
+  for (const char* word : {"<spring", "<warmth", "<readings", "delay="}) {
+    EXPECT_EQ(text.find(word), std::string::npos) << word;
+  }
+  arm.joints[1].offset = 0.25;
+  arm.assumed_delay = 0.002;
+  const ArmDescription read = parse_urdf(urdf_text(arm, ""), "text", {});
+  EXPECT_DOUBLE_EQ(read.joints[1].offset, 0.25) << "a spring that only pulls";
+  EXPECT_EQ(read.joints[0].offset, 0);
+  EXPECT_EQ(read.assumed_delay, 0.002);
+  EXPECT_FALSE(read.delay);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "app/run/fitted_gains.h"
 #include "app/run/tip_limits.h"
+#include "app/run/wall_tap.h"
 #include "core/dynamics/arm.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
@@ -86,6 +87,20 @@ TEST(WallTrial, EndsWhenItIsStopped) {
   const ArmDescription arm = test::omni();
   const std::atomic<bool> stop = true;
   EXPECT_EQ(try_wall(arm, rest_pose(arm), of(CouplingKind::predictive), 600, &stop).held, 0);
+}
+
+// Only the first joint can be turned: it moves the tip sideways. The wall is tried that way, too,
+// although the tip is damped least up and down.
+TEST(WallTrial, PressesAlongEachAxisOfTheInertia) {
+  ArmDescription arm = test::omni();
+  arm.joints[1].friction = arm.joints[2].friction = 5;
+  const Parameters p = of(CouplingKind::predictive);
+  EXPECT_LT(std::abs(tap_place(arm, rest_pose(arm), p).out.y()), 1e-6);
+  const WallTrial sideways = try_wall(arm, rest_pose(arm), p, 300);
+  EXPECT_EQ(sideways.held, 300) << sideways.fault;
+  arm.joints[0].friction = 5;
+  EXPECT_EQ(try_wall(arm, rest_pose(arm), p, 300).fault,
+            "no simulated hand reaches a wall of 300 N/m");
 }
 
 }  // namespace

@@ -339,5 +339,108 @@ TEST(PlotChoice, IsCalledByWhatItShowsUnlessItHasAName) {
   EXPECT_EQ(plot_spec({.title = "a/b: c", .channels = {}}, channels, {}).file_name, "a-b-c");
 }
 
+// Units, the least span of an axis in them, and where people read thousandths.
+TEST(PlotChoice, ScalesItsAxesByTheirUnits) {
+  const TraceChannels channels{RowLayout(3)};
+  struct Wanted {
+    const char *key, *unit, *small;  // small: unit of small values; empty: always the same
+    double span;
+  };
+  for (const Wanted& each : {Wanted{"coordination/error", "rad", "mrad", 20e-3},
+                             {"energy/port", "J", "mJ", 1e-3},
+                             {"device/tip.1", "m", "mm", 1e-3},
+                             {"hand/torque_norm", "N m", "", 0.05},
+                             {"contact/total_force_norm", "N", "", 0.1},
+                             {"device/velocity.1", "rad/s", "", 0.05},
+                             {"coupling/eta", "", "", 1e-2},
+                             {"hand/grip", "", "", 1e-2}}) {
+    PlotAxis y = plot_spec({.channels = {each.key}}, channels, {}).y;
+    EXPECT_EQ(y.unit, each.unit) << each.key;
+    EXPECT_EQ(y.smallest_span, each.span) << each.key;
+    EXPECT_FALSE(y.log);
+    y.choose_unit(0.5);
+    EXPECT_EQ(y.unit, *each.small != '\0' ? each.small : each.unit);
+    EXPECT_EQ(y.factor, *each.small != '\0' ? 1000 : 1);
+    y.choose_unit(5);
+    EXPECT_EQ(y.unit, each.unit);
+    EXPECT_EQ(y.factor, 1);
+  }
+  const PlotSpec spectrum =
+      plot_spec({.kind = PlotKind::spectrum, .channels = {"energy/port"}}, channels, {});
+  EXPECT_TRUE(spectrum.y.log && spectrum.x.log);
+  EXPECT_EQ(spectrum.y.smallest_span, 1) << "a decade";
+  EXPECT_EQ(spectrum.x.label, "frequency");
+  EXPECT_EQ(spectrum.x.unit, "Hz");
+  EXPECT_FALSE(spectrum.x.zero_line);
+  const PlotSpec cross = plot_spec(
+      {.kind = PlotKind::cross, .across = "coordination/error", .channels = {"energy/port"}},
+      channels, {});
+  EXPECT_EQ(cross.x.label, "|x_E|");
+  EXPECT_EQ(cross.x.unit, "rad");
+  EXPECT_EQ(cross.x.smallest_span, 20e-3);
+  const PlotSpec mixed =
+      plot_spec({.channels = {"coordination/error", "hand/torque_norm"}}, channels, {});
+  ASSERT_EQ(mixed.curves.size(), 2u);
+  EXPECT_EQ(mixed.curves[0].label, "|x_E| [rad]");
+  EXPECT_EQ(mixed.curves[1].label, "|f1| [N m]");
+  EXPECT_EQ(mixed.y.smallest_span, 1e-2);
+  EXPECT_EQ(plot_spec({}, channels, {}).y.smallest_span, 1);
+  EXPECT_EQ(plot_spec({}, channels, {}).title, "empty plot");
+}
+
+TEST(PlotChoice, SaysKindsAndFirstPlotsByTheirNames) {
+  EXPECT_STREQ(name(PlotKind::time), "time");
+  EXPECT_STREQ(name(PlotKind::cross), "cross");
+  EXPECT_STREQ(name(PlotKind::spectrum), "spectrum");
+  const TraceChannels channels{RowLayout(3)};
+  EXPECT_EQ(title_of({.kind = PlotKind::cross,
+                      .across = "coordination/error",
+                      .channels = {"energy/port", "no/such"}},
+                     channels),
+            "energy port, no/such against |x_E|");
+  ASSERT_EQ(simple_plots().size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const PlotChoice simple = simple_plots()[i], usual = default_plots()[i];
+    EXPECT_EQ(simple.title, usual.title);
+    EXPECT_EQ(simple.kind, PlotKind::time);
+    EXPECT_LE(simple.channels.size(), usual.channels.size());
+    for (const std::string& key : simple.channels) {
+      EXPECT_EQ(std::ranges::count(usual.channels, key), 1) << key;
+    }
+  }
+}
+
+TEST(LawsOfASession, AreThoseOfARow) {
+  Session session;
+  session.info.tick = 0.01;
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  session.rows.assign(100 * stride, 0.0);
+  for (std::size_t k = 50; k < 100; ++k) {
+    session.layout.in(std::span(session.rows).subspan(k * stride, stride), Column::kind)[0] = 2;
+  }
+  EXPECT_EQ(laws_at(session, 0.494), std::vector{0});
+  EXPECT_EQ(laws_at(session, 0.496), std::vector{2}) << "the nearest row";
+  EXPECT_EQ(laws_at(session, 77), std::vector{2}) << "the last one";
+  EXPECT_EQ(laws_at(session, -1), std::vector{0});
+  session.beside.resize(1);
+  EXPECT_EQ(laws_at(session, 1), (std::vector{2, -1})) << "a lane without rows";
+}
+
+TEST(LawsOfASession, AreNamedOfSeveralLanesOnly) {
+  std::vector<Parameters> lanes(1);
+  lanes[0].kind = CouplingKind::predictive;
+  const RunNames one = run_names(lanes);
+  EXPECT_TRUE(one.names.empty());
+  EXPECT_FALSE(one.beside || one.several());
+  EXPECT_EQ(one.laws, std::vector{2});
+  lanes.emplace_back().kind = CouplingKind::standard;
+  const RunNames two = run_names(lanes);
+  EXPECT_EQ(two.names, (std::vector<std::string>{"predictive", "standard"}));
+  EXPECT_TRUE(two.beside && two.several());
+  EXPECT_EQ(two.laws, (std::vector{2, 0}));
+  EXPECT_EQ(two.name(2), "");
+  EXPECT_EQ(two.law(2), -1);
+}
+
 }  // namespace
 }  // namespace limpid

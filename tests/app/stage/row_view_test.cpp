@@ -159,5 +159,137 @@ TEST(RowView, GivesAMeshThatMovesItsPlaceInItsBody) {
   EXPECT_EQ(pictures[2].pose.translation(), Vec3::Zero());
 }
 
+// A body that the hand's magnet holds and that is pulled by a point of its own.
+TEST(RowView, ShowsTheMagnetAndThePullOfABody) {
+  RunPlan plan = test::plan("table.toml", "touch.csv", 1);
+  for (const char* name : {"one", "two"}) {
+    plan.document.scene.add({.name = name, .shape = Box{}, .body = Body{}});
+  }
+  const RowLayout layout = plan.layout();
+  ASSERT_EQ(layout.bodies(), 2);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  const auto put = [&](Column c, const std::vector<double>& values) {
+    std::ranges::copy(values, layout.in(std::span(row), c).begin());
+  };
+  // The second one is a quarter turn to the left.
+  const double s = std::sqrt(0.5);
+  put(Column::body_pose, {0, 0, 0, 1, 0, 0, 0, 0.1, 0.2, 0.3, s, 0, 0, s});
+  const RowView rows(plan.arm, plan.document.scene);
+  ViewState view = rows.view(layout, row);
+  EXPECT_FALSE(view.magnet || view.magnet_holds || view.pull || view.hand_grips);
+  put(Column::hand_magnet, {1});
+  put(Column::hand_grip, {1});
+  put(Column::hand_pull, {2});
+  put(Column::pull_point, {0.01, 0.02, 0.03});
+  put(Column::pull_target, {0.4, 0.5, 0.6});
+  view = rows.view(layout, row);
+  EXPECT_TRUE(view.magnet && view.hand_grips && view.show_hand);
+  EXPECT_FALSE(view.magnet_holds);
+  EXPECT_EQ(view.pulled, 1u);
+  ASSERT_TRUE(view.pull);
+  const auto& [point, target] = *view.pull;
+  EXPECT_NEAR((point - Vec3(0.1 - 0.02, 0.2 + 0.01, 0.33)).norm(), 0, 1e-12);
+  EXPECT_EQ(target, Vec3(0.4, 0.5, 0.6));
+  put(Column::magnet, {1});
+  put(Column::hand_pull, {3});
+  view = rows.view(layout, row);
+  EXPECT_TRUE(view.magnet_holds);
+  EXPECT_FALSE(view.pull) << "there is no third one";
+}
+
+// Virtual work: a force at the tip and its torque on the joints, found by moving each a little.
+TEST(RowView, ShowsTheHandsForceAtTheDevicesTip) {
+  const RunPlan plan = test::plan("table.toml", "touch.csv", 1);
+  const RowLayout layout = plan.layout();
+  const RowView rows(plan.arm);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  const Eigen::VectorXd rest = rest_pose(plan.arm);
+  std::ranges::copy(rest, layout.in(std::span(row), Column::device_position).begin());
+  const Vec3 force(0.4, -0.3, 1.2);
+  for (Eigen::Index j = 0; j < rest.size(); ++j) {
+    Eigen::VectorXd more = rest, less = rest;
+    more[j] += 1e-6;
+    less[j] -= 1e-6;
+    const Vec3 way = rows.tip({more.data(), 3}) - rows.tip({less.data(), 3});
+    layout.in(std::span(row), Column::hand_torque)[static_cast<std::size_t>(j)] =
+        force.dot(way) / 2e-6;
+  }
+  const ViewState view = rows.view(layout, row);
+  EXPECT_NEAR((view.hand_force - force).norm(), 0, 1e-4);
+  EXPECT_NEAR((view.device.tip - rows.tip({rest.data(), 3})).norm(), 0, 1e-12);
+  ASSERT_EQ(view.device.links.size(), 3u);
+  EXPECT_NEAR((view.device.links[2] * plan.arm.tip.translation() - view.device.tip).norm(), 0, 1e-9)
+      << "the tip is fixed to the last link";
+}
+
+TEST(RowView, LaysARunOverAnother) {
+  ViewState view, other;
+  other.device.tip = Vec3(1, 0, 0);
+  other.proxy.tip = Vec3(0, 1, 0);
+  other.hand_force = Vec3(0, 0, 2);
+  other.contacts.resize(3);
+  other.bodies.resize(2);
+  lay_over(view, other);
+  ASSERT_EQ(view.beside.size(), 1u);
+  EXPECT_EQ(view.beside[0].device.tip, other.device.tip);
+  EXPECT_EQ(view.beside[0].proxy.tip, other.proxy.tip);
+  EXPECT_EQ(view.beside[0].hand_force, other.hand_force);
+  EXPECT_EQ(view.beside[0].contacts.size(), 3u);
+  EXPECT_EQ(view.beside[0].bodies.size(), 2u);
+}
+
+// A view whose tips are at `x`, at a time.
+ViewState seen_at(ViewMemory& memory, double time, double x,
+                  const std::vector<ContactForce>& contacts = {}) {
+  ViewState view;
+  view.device.tip = Vec3(x, 0, 0);
+  view.proxy.tip = Vec3(0, x, 0);
+  memory.update(view, contacts, time);
+  return view;
+}
+
+TEST(MemoryOfAView, HasWhereTheTipsWereInTheLastSecond) {
+  ViewMemory memory;
+  ViewState view;
+  for (int k = 0; k <= 30; ++k) view = seen_at(memory, 0.125 * k, k);
+  ASSERT_EQ(view.device.trail.size(), 9u);
+  ASSERT_EQ(view.proxy.trail.size(), 9u);
+  for (int i = 0; i < 9; ++i) {
+    EXPECT_EQ(view.device.trail[static_cast<std::size_t>(i)], Vec3(22 + i, 0, 0)) << "oldest first";
+    EXPECT_EQ(view.proxy.trail[static_cast<std::size_t>(i)], Vec3(0, 22 + i, 0));
+  }
+  view = seen_at(memory, 3.75, 77);
+  ASSERT_EQ(view.device.trail.size(), 9u) << "time stood still";
+  EXPECT_EQ(view.device.trail.back().x(), 77);
+  EXPECT_EQ(seen_at(memory, 3.5, 1).device.trail.size(), 1u) << "time went back";
+  EXPECT_EQ(seen_at(memory, 4.5, 1).device.trail.size(), 2u);
+  EXPECT_EQ(seen_at(memory, 5.6, 1).device.trail.size(), 1u) << "it jumped";
+  memory.clear();
+  EXPECT_EQ(seen_at(memory, 5.7, 1).device.trail.size(), 1u);
+}
+
+TEST(MemoryOfAView, KnowsSinceWhenAContactHasBeenThere) {
+  ViewMemory memory;
+  const ContactForce here{Vec3::Zero(), Vec3(0, 0, 2)};
+  const auto age = [&](double time, const ContactForce& contact) {
+    const ViewState view = seen_at(memory, time, 0, {contact});
+    EXPECT_EQ(view.contacts.size(), 1u);
+    EXPECT_EQ(view.contacts.at(0).position, contact.point);
+    EXPECT_EQ(view.contacts.at(0).force, contact.force);
+    return view.contacts.at(0).age;
+  };
+  EXPECT_NEAR(age(1, here), 0, 1e-12);
+  EXPECT_NEAR(age(1.02, here), 0.02, 1e-12);
+  EXPECT_NEAR(age(1.04, {Vec3(0.014, 0, 0), Vec3(0, 0, 1)}), 0.04, 1e-12) << "it slid";
+  EXPECT_NEAR(age(1.06, {Vec3(0.028, 0, 0), Vec3(0, 0, 1)}), 0.06, 1e-12);
+  EXPECT_NEAR(age(1.07, {Vec3(0.044, 0, 0), Vec3(0, 0, 1)}), 0, 1e-12) << "16 mm are too far";
+  EXPECT_TRUE(seen_at(memory, 1.1, 0, {{here.point, Vec3::Zero()}}).contacts.empty());
+  EXPECT_NEAR(age(1.11, {Vec3(0.044, 0, 0), Vec3(0, 0, 1)}), 0.04, 1e-12) << "a short pause";
+  seen_at(memory, 1.17, 0);
+  EXPECT_NEAR(age(1.18, {Vec3(0.044, 0, 0), Vec3(0, 0, 1)}), 0, 1e-12) << "it had ended";
+  memory.clear();
+  EXPECT_NEAR(age(1.19, {Vec3(0.044, 0, 0), Vec3(0, 0, 1)}), 0, 1e-12);
+}
+
 }  // namespace
 }  // namespace limpid

@@ -56,5 +56,18 @@ TEST_F(ATooltip, StandsAboveABarBelowAndBelowABarAbove) {
   }
 }
 
+// Words take the room beside the panel: 26 times the font's size at most.
+TEST_F(ATooltip, IsAsWideAsALineOfWords) {
+  const ImRect left({0, 20}, {250, 400}), right({560, 20}, {800, 400}), bar({0, 560}, {800, 600});
+  for (const ImRect& panel : {left, right, bar}) {
+    for (const float part : {0.1f, 0.9f}) {
+      const float x = panel.Min.x + part * (panel.GetWidth() - 30);
+      const ImRect tip = of_item(panel, ImRect({x, panel.Min.y + 5}, {x + 30, panel.Min.y + 25}));
+      EXPECT_GT(tip.GetWidth(), 320) << panel.Min.x << ", " << part;
+      EXPECT_LT(tip.GetWidth(), 26 * 13 + 20) << panel.Min.x << ", " << part;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limpid

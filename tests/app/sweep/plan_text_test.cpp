@@ -36,6 +36,7 @@ TEST(TextOfAPlan, SaysWhatIsWrongWithAnAxis) {
            {"key = \"coupling.kind\"", "values: missing"},
            {"key = \"coupling.kind\", values = 3", "a list of words from: standard"},
            {"key = \"coupling.kind\", values = [3]", "a list of words from: standard"},
+           {"key = \"coupling.kind\", values = [\"predctive\"]", "did you mean predictive?"},
            {"key = \"coupling.eta\", values = []", "a list of numbers"},
            {"key = \"coupling.eta\", values = \"1\"", "a list of numbers"},
            {"key = \"coupling.eta\", values = [\"1\"]", "a list of numbers"},

@@ -105,5 +105,45 @@ TEST_F(Drafts, ShowTheLimitOfTheoryOverEtaForTheLawThatHasOne) {
   EXPECT_TRUE(read().figure.theory.empty());
 }
 
+TEST_F(Drafts, AreCalledByWhatTheyMeasureAndVary) {
+  EXPECT_EQ(short_name(draft_), "energy_highest over eta");
+  draft_.axes.push_back({.key = "hand.stiffness", .from = 10, .to = 20, .count = 2});
+  draft_.axes.push_back({.key = "scene.body.die.mass", .from = 1, .to = 2, .count = 2});
+  EXPECT_EQ(short_name(draft_), "energy_highest over eta and stiffness and mass");
+  EXPECT_EQ(short_name({}), "sweep");
+}
+
+// Gains that happen to be the paper's are not fitted to another arm behind a person's back.
+TEST_F(Drafts, SayTheGainsOfAnotherArm) {
+  draft_.device = "omega.urdf";
+  draft_.hand.clear();
+  draft_.parameters.b_v = 0.5;
+  const SweepPlan plan = read();
+  EXPECT_EQ(plan.world.device, "omega.urdf");
+  EXPECT_EQ(plan.tap, 4) << "as usual";
+  const Parameters run = run_of(plan, 0).parameters;
+  EXPECT_EQ(run.k_vc, Parameters{}.k_vc);
+  EXPECT_EQ(run.b_v, 0.5);
+  EXPECT_EQ(run.alpha, Parameters{}.alpha);
+  draft_.device.clear();
+  EXPECT_THAT(plan_text(draft_), Not(HasSubstr("coupling.k_vc")));
+  EXPECT_THAT(plan_text(draft_), HasSubstr("coupling.b_v"));
+}
+
+TEST_F(Drafts, LeaveOutWhatIsAsUsual) {
+  draft_ = {.title = "Plain", .hand = "touch.csv", .measures = {"energy"}};
+  const SweepPlan plan = read();
+  EXPECT_TRUE(plan.settings.empty());
+  EXPECT_EQ(plan.seconds, 0) << "as long as the hand";
+  EXPECT_EQ(plan.points(), 1u);
+  const std::string text = plan_text(draft_);
+  for (const char* key : {"set", "seconds", "device", "scene", "figure"}) {
+    EXPECT_THAT(text, Not(HasSubstr(std::string(key) + " ="))) << text;
+  }
+  draft_.axes = {{.key = "hand.stiffness", .from = 10, .to = 30, .count = 5}};
+  EXPECT_THAT(read().axes.at(0).values, ElementsAre(10, 15, 20, 25, 30));
+  EXPECT_FALSE(read().axes.at(0).logarithmic);
+}
+
 }  // namespace
 }  // namespace limpid

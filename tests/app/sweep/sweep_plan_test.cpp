@@ -313,5 +313,95 @@ TEST_F(SweepPlans, HaveNoLogarithmOfZeroOrLess) {
   EXPECT_EQ(axis("0.001", ", count = 3"), "taken");
 }
 
+TEST_F(SweepPlans, SuggestTheFileThatWasMeant) {
+  const std::string said = refusal(
+      "device = \"omnii.urdf\"\nmeasure = [\"energy\"]\n"
+      "axis = [ { key = \"coupling.eta\", values = [1] } ]\n");
+  EXPECT_THAT(said, AllOf(HasSubstr("plan.toml: file \"omnii.urdf\" not found, neither beside the "
+                                    "plan nor in "),
+                          HasSubstr("assets/devices; did you mean omni.urdf?")));
+}
+
+TEST_F(SweepPlans, HaveNoMoreWorldsThanMemoryHolds) {
+  const auto names = [](const char* ending) {
+    std::string all;
+    for (int i = 0; i < 32; ++i) all += fmt::format("{}\"{}{}\"", i > 0 ? ", " : "", i, ending);
+    return all;
+  };
+  EXPECT_THAT(
+      refusal("measure = [\"energy\"]\naxis = [ { key = \"scene\", values = [" + names(".toml") +
+              "] }, { key = \"hand\", values = [" + names(".csv") + "] } ]\n"),
+      HasSubstr("plan.toml: more than 1000 combinations of device, scene and hand"));
+}
+
+// A hand that jumps is at its start for one tick, whatever the tick is.
+TEST_F(SweepPlans, LetAHandJumpInItsFirstTick) {
+  const SweepPlan plan = read(R"(scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [0.001, 0, -0.002] }
+seconds = 0.1
+seed = 5
+measure = ["energy"]
+axis = [{ key = "loop.tick", values = [0.001, 0.004] }]
+)");
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    const RunPlan run = run_of(plan, i);
+    const double tick = run.parameters.tick;
+    EXPECT_EQ(tick, plan.axes[0].values[i]);
+    EXPECT_EQ(run.rows, i == 0 ? 100u : 25u);
+    EXPECT_EQ(run.seed, 5u);
+    EXPECT_EQ(run.hand.source, "a jump");
+    EXPECT_EQ(run.hand.sample(0, tick), Vec3(0.19, 0, 0));
+    for (const std::size_t k : {1, 2, 20}) {
+      EXPECT_LT((run.hand.sample(k, tick) - Vec3(0.191, 0, -0.002)).norm(), 1e-15) << k;
+      EXPECT_EQ(run.hand.grip_sample(k, tick), 1);
+    }
+  }
+}
+
+TEST_F(SweepPlans, MakeRandomArmsBySeedAndTapAsTheySay) {
+  const SweepPlan plan = read(R"(hand = { tap = 2 }
+seconds = 0.25
+measure = ["energy"]
+axis = [ { key = "arm.seed", values = [0, 1, 2] }, { key = "scene.stiffness", values = [150] } ]
+)");
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const RunPlan run = run_of(plan, i);
+    EXPECT_EQ(run.arm.dof(), 3) << "where no axis says";
+    EXPECT_EQ(run.arm.urdf, run_of(plan, i).arm.urdf);
+    EXPECT_NE(run.arm.urdf, run_of(plan, (i + 1) % 3).arm.urdf);
+    EXPECT_THAT(run.arm.urdf, AllOf(HasSubstr("random arm: 3 joints, 0.15"),
+                                    HasSubstr(fmt::format(" kg, seed {} -->", i))));
+    EXPECT_EQ(run.document.scene.objects.front().material.stiffness, 150);
+  }
+}
+
+TEST_F(SweepPlans, MeetTheirLimits) {
+  const auto met = [](std::optional<double> above, std::optional<double> below, double value) {
+    return SweepLimit{find_measure("energy"), above, below}.met(value);
+  };
+  EXPECT_TRUE(met({}, {}, 1) && !met({}, {}, 0)) << "yes";
+  EXPECT_TRUE(met(2, {}, 2.5) && !met(2, {}, 2) && !met(2, {}, 1));
+  EXPECT_TRUE(met({}, 2, 1.5) && !met({}, 2, 2) && !met({}, 2, 3));
+  EXPECT_TRUE(met(1, 2, 1.5) && !met(1, 2, 0.5) && !met(1, 2, 2.5)) << "between";
+  EXPECT_FALSE(met(1, {}, std::nan("")));
+}
+
+TEST_F(SweepPlans, NumberAPointAsTheyFindIt) {
+  const SweepPlan plan = read(with(R"(repeats = 2
+samples = 3
+axis = [ { key = "coupling.eta", values = [0.5, 1] },
+         { key = "hand.damping", from = 1, to = 2, sample = "random" },
+         { key = "hand.stiffness", values = [100, 200, 300, 400] } ])"));
+  ASSERT_EQ(plan.points(), 48u);
+  for (std::uint64_t i = 0; i < 48; ++i) {
+    const SweepPoint point = point_of(plan, i);
+    EXPECT_EQ(point.place[0], i / 24);
+    EXPECT_EQ(point.place[1], i / 2 % 3) << "the sample";
+    EXPECT_EQ(point.place[2], i / 6 % 4);
+    EXPECT_EQ(point.repeat, i % 2);
+    EXPECT_EQ(number_of(plan, point.place, i / 2 % 3, i % 2), i);
+  }
+}
+
 }  // namespace
 }  // namespace limpid

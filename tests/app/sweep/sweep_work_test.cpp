@@ -173,5 +173,84 @@ TEST_F(SweepWork, HasNoTimesInItsTableAndASumOfEachPiece) {
   H5Fclose(file);
 }
 
+// 21 points in blocks of four: the last block has one.
+TEST_F(SweepWork, IsCutIntoBlocksThatHoldEachPointOnce) {
+  ASSERT_EQ(plan_.points(), 21u);
+  ASSERT_EQ(blocks_of(plan_), 6u);
+  std::uint64_t next = 0;
+  for (std::uint64_t b = 0; b < 6; ++b) {
+    const SweepBlock block = block_of(plan_, b);
+    EXPECT_EQ(block.number, b);
+    EXPECT_EQ(block.first, next);
+    EXPECT_EQ(block.size, b < 5 ? 4u : 1u);
+    next += block.size;
+  }
+  const SweepFolder folder(plan_, dir_ / "out");
+  EXPECT_EQ(folder.path(), dir_ / "out");
+  EXPECT_EQ(folder.table(), dir_ / "out/table.h5");
+  EXPECT_EQ(folder.file(block_of(plan_, 5)), dir_ / "out/blocks/000005.h5");
+}
+
+TEST_F(SweepWork, TakesBlocksAsTheyComeAndCountsTheirPoints) {
+  const SweepFolder folder(plan_, dir_ / "out");
+  SweepBook book(plan_, folder, false);
+  EXPECT_EQ(book.gather(), 0u);
+  folder.write(block_of(plan_, 1), std::vector<double>(12, 0.5));
+  folder.write(block_of(plan_, 5), {1, 2, 3});
+  EXPECT_TRUE(folder.there(block_of(plan_, 5)));
+  EXPECT_EQ(folder.read(block_of(plan_, 5)), (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(book.gather(), 5u);
+  EXPECT_EQ(book.gather(), 0u) << "each block once";
+  EXPECT_TRUE(book.has(1) && book.has(5) && !book.has(0));
+  EXPECT_EQ(book.table().count(), 5u);
+  EXPECT_EQ(book.table().at(4, 2), 0.5);
+  EXPECT_EQ(book.table().at(20, 1), 2);
+  EXPECT_FALSE(book.complete());
+}
+
+TEST_F(SweepWork, HasAFolderThatKnowsItsPlan) {
+  const fs::path out = dir_ / "out";
+  EXPECT_FALSE(is_sweep_folder(out));
+  EXPECT_EQ(plan_behind(out), out / "plan.toml") << "not yet a sweep's";
+  check_plan_of(plan_, out);
+  { const SweepFolder made(plan_, out); }
+  EXPECT_TRUE(is_sweep_folder(out));
+  EXPECT_EQ(plan_behind(out), fs::weakly_canonical(dir_ / "plan.toml"));
+  check_plan_of(plan_, out);
+  const SweepPlan other = test::sweep_plan(dir_, test::kShort + "# and more\n");
+  try {
+    check_plan_of(other, out);
+    ADD_FAILURE() << "taken";
+  } catch (const FileError& e) {
+    EXPECT_THAT(e.what(), AllOf(HasSubstr("sweep.key: made from another plan"),
+                                HasSubstr(hex(plan_.key)), HasSubstr("needed: " + hex(other.key))));
+  }
+  // The folder of the plan is gone: its files may lie beside the table.
+  fs::create_directories(dir_ / "moved");
+  std::ofstream(dir_ / "moved/sweep.key") << "plan 1\nbuild 2\nfrom /no/such/folder/plan.toml\n";
+  EXPECT_EQ(plan_behind(dir_ / "moved"), dir_ / "moved/plan.toml");
+}
+
+TEST_F(SweepWork, RefusesAFolderWhoseNoteIsNone) {
+  fs::create_directories(dir_ / "out");
+  std::ofstream(dir_ / "out/sweep.key") << "milk, bread\n";
+  try {
+    const SweepFolder folder(plan_, dir_ / "out");
+    FAIL() << "taken";
+  } catch (const FileError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("sweep.key: this file is no note of a sweep"));
+  }
+  std::ofstream(dir_ / "file") << "in the way";
+  EXPECT_THROW(SweepFolder(plan_, dir_ / "file"), FileError);
+}
+
+TEST_F(SweepWork, WritesItsTableNotBeforeItIsTime) {
+  const SweepFolder folder(plan_, dir_ / "out");
+  const SweepBook book(plan_, folder, false);
+  TimedTable table(book);
+  table.write_if_time();
+  EXPECT_FALSE(fs::exists(folder.table())) << "two seconds are between two tables";
+}
+
 }  // namespace
 }  // namespace limpid

@@ -89,6 +89,11 @@ TEST(UrdfOwn, RefusesWarmthThatNoMotorHas) {
   const std::string good = std::to_string(arm.joints[0].effort / 2);
   EXPECT_THAT(said("joint='a_b' continuous='-1' time='60'"), HasSubstr("allowed: "));
   EXPECT_THAT(said("joint='a_b' continuous='0' time='60'"), HasSubstr("continuous \"0\""));
+  std::string weak = kChain;
+  weak.replace(weak.find("effort='2'"), 10, "effort='0.45'");
+  const std::string range = refusal(
+      [&] { parse(weak + "<limpid><warmth joint='a_b' continuous='9' time='60'/></limpid>"); });
+  EXPECT_THAT(range, HasSubstr("allowed: 0.00045 to 0.45 N m"));
   EXPECT_THAT(said("joint='a_b' continuous='1e6' time='60'"),
               HasSubstr(fmt::format("to {} N m", arm.joints[0].effort)));
   EXPECT_THAT(said("joint='b_c' continuous='1e6' time='60'"),

@@ -11,6 +11,7 @@
 namespace limpid {
 namespace {
 
+using test::at;
 using test::joint;
 using test::kInertial;
 using test::kLimit;
@@ -151,6 +152,10 @@ TEST(Urdf, RefusesWhatIsNoArm) {
       {two + joint("a", "b", "revolute", std::string("<axis xyz='0 1'/>") + kLimit), {"x.urdf"}},
       {two + joint("a", "b", "revolute", std::string("<origin xyz='0 inf 0'/>") + kLimit),
        {"x.urdf"}},
+      {two + joint("a", "b", "revolute", at("1e300 1e300 0") + kLimit),
+       {"x.urdf:4", "a_b", "origin xyz \"1e+300 1e+300 0\"; allowed: -1000000 to 1000000 m"}},
+      {two + joint("a", "b") + joint("b", "c", "fixed", at("0 -1e7 0")) + link("c", ""),
+       {"x.urdf:5", "b_c", "origin xyz \"0 -10000000 0\"; allowed"}},
       {two + joint("a", "b", "revolute", "<limit lower='1' upper='-1' effort='1' velocity='1'/>"),
        {"x.urdf:4", "a_b", "limits from 1 to -1"}},
       {two + joint("a", "b", "revolute", "<limit lower='-1' upper='1' effort='-2' velocity='1'/>"),
@@ -170,6 +175,16 @@ TEST(Urdf, RefusesWhatIsNoArm) {
                 "<inertial><mass value='-1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' "
                 "iyz='0' izz='1'/></inertial>"),
        {"x.urdf:4", "'b'", "mass -1"}},
+      {link("a") + joint("a", "b") +
+           link("b", "<inertial>" + at("1e160 0 0") +
+                         "<mass value='1'/><inertia ixx='1' ixy='0' "
+                         "ixz='0' iyy='1' iyz='0' izz='1'/></inertial>"),
+       {"x.urdf:4", "'b'", "inertial: origin xyz \"1e+160 0 0\"; allowed"}},
+      {link("a") + joint("a", "b") +
+           link("b",
+                "<inertial><mass value='1e308'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' "
+                "iyz='0' izz='1'/></inertial>"),
+       {"x.urdf:4", "'b'", "mass 1e+308 kg; allowed: 0 to 1000000 kg"}},
       {link("a") + joint("a", "b") +
            link("b",
                 "<inertial><mass value='1'/><inertia ixx='1' ixy='2' ixz='0' iyy='1' "

@@ -90,6 +90,7 @@ TEST(UrdfVisuals, ThatCannotBeShownAreAWarningAndAPlainShape) {
       {visual(""), "geometry"},
       {"<visual/>", "geometry"},
       {visual("<sphere radius='1'/>", "<origin xyz='0 0 up'/>"), "origin"},
+      {visual("<sphere radius='1'/>", "<origin xyz='0 0 1e300'/>"), "allowed: -1000000 to"},
       {visual("<mesh filename='a&#10;b.stl'/>"), "not found"},
   };
   for (const auto& [text, said] : cases) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +17,15 @@
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
+
+bool has_locks = true;
+// Stands before the system's own, as on a file system without locks.
+extern "C" int flock(int file, int how) noexcept {
+  if (has_locks) return static_cast<int>(syscall(SYS_flock, file, how));
+  errno = ENOLCK;
+  return -1;
+}
+
 namespace {
 
 using testing::HasSubstr;
@@ -218,6 +228,15 @@ TEST_F(AClaim, IsRefusedWhereNobodyCanTell) {
   } catch (const HidError& error) {
     EXPECT_THAT(error.what(), HasSubstr("No such file or directory, so nobody can tell"));
   }
+}
+
+TEST_F(AClaim, IsRefusedWithoutLocksAndThatIsSaid) {
+  has_locks = false;
+  const std::string said = refusal("a"), by = claimed_by("a", folder);
+  has_locks = true;
+  EXPECT_THAT(said, HasSubstr("limpid-a.lock: cannot be locked: No locks available, so nobody"));
+  EXPECT_EQ(by, "");
+  EXPECT_EQ(refusal("a"), "");
 }
 
 // Two containers may share the node without a common folder of claims.

@@ -409,6 +409,20 @@ TEST(GltfCompressed, ReadsWebP) {
                          model.images[0].rgba.end()));
 }
 
+// Base64 has plus signs, which are blanks in the URIs of web forms.
+TEST(GltfCompressed, ReadsWebPInAUri) {
+  GltfBuilder file = textured(R"({"extensions":{"EXT_texture_webp":{"source":0}}})", webp());
+  file.more.resize(file.more.find(R"("images")"));
+  file.more +=
+      R"("images":[{"uri":"data:image/webp;base64,UklGRiYAAABXRUJQVlA4TBoAAAAvAUAAAA/wg34CAYrC)"
+      R"(/8ue8Dv/YX4YgYj+hw=="}])";
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_TRUE(model.warnings.empty());
+  ASSERT_EQ(model.images.size(), 1u);
+  EXPECT_EQ(model.images[0].rgba,
+            (Bytes{4, 7, 9, 255, 4, 7, 9, 255, 4, 7, 9, 255, 3, 4, 200, 255}));
+}
+
 TEST(GltfCompressed, LeavesABrokenWebPOut) {
   Bytes half = webp();
   half.resize(half.size() / 2);

@@ -57,6 +57,32 @@ TEST_F(GltfFolder, ReadsBuffersAndImagesBesideTheFile) {
   EXPECT_EQ(model.images[0].rgba, (Bytes{255, 0, 0, 255}));
 }
 
+// Names that were never encoded are files of exactly that name.
+TEST_F(GltfFolder, TakesTheFileOfExactlyThatNameBeforeTheOneThatItEncodes) {
+  GltfBuilder file = triangle();
+  for (const char* name : {"100%25.bin", "a%2Fb.bin", "%41.bin", "a+b.bin", "50%.bin"}) {
+    file.uri = name;
+    write(folder_ / name, file.data);
+    EXPECT_EQ(parse_gltf(file.text(), "part.gltf", folder_).indices.size(), 3u) << name;
+  }
+  write(folder_ / "A.bin", {1});
+  file.uri = "%41.bin";
+  EXPECT_EQ(parse_gltf(file.text(), "part.gltf", folder_).indices.size(), 3u);
+  std::filesystem::remove(folder_ / "%41.bin");
+  write(folder_ / "A.bin", file.data);
+  EXPECT_EQ(parse_gltf(file.text(), "part.gltf", folder_).indices.size(), 3u);
+}
+
+TEST_F(GltfFolder, NamesAMissingImageAsItIsWritten) {
+  GltfBuilder file = triangle();
+  file.primitive = R"(,"material":0)";
+  file.more = R"(,"images":[{"uri":"no+100%25.png"}],"textures":[{"source":0}],"materials":[{)"
+              R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+  const Model model = parse_gltf(file.binary(), "part.glb", folder_);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("\"no+100%25.png\") is missing"), std::string::npos);
+}
+
 TEST_F(GltfFolder, NamesABufferThatIsMissing) {
   GltfBuilder file = triangle();
   file.uri = "nowhere.bin";

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import math
 from statistics import NormalDist
-from typing import Iterable, List, NamedTuple, Sequence, Tuple
+from typing import Any, Iterable, List, NamedTuple, Sequence, Tuple
 
 from limpid.errors import ArgumentError
+from limpid.values import items_of, number, number_above, pairs_of, whole
 
 LEVEL = 0.75  # of right answers, at the threshold
 _QUARTILE = NormalDist().inv_cdf(LEVEL)
@@ -45,9 +46,20 @@ class Fit(NamedTuple):
 
 
 def chance_of(level: float, threshold: float, lapse: float = 0.02) -> float:
-    """That an answer to this difference is right."""
+    """That an answer to this difference is right. Without a lapse that is never quite certain, so that
+    a wrong answer has a logarithm."""
     right = 0.5 * math.erfc(-_QUARTILE * level / threshold / math.sqrt(2))
-    return 0.5 * lapse + (1 - lapse) * right
+    return min(0.5 * lapse + (1 - lapse) * right, 1 - 1e-15)
+
+
+def lapse_of(value: Any) -> float:
+    """A part of the answers that are slips."""
+    return number("lapse", value, "a number from 0 to below 1", lambda x: 0 <= x < 1)
+
+
+def probability(value: Any) -> float:
+    """The probability of an interval."""
+    return number("part", value, "a part above 0 and below 1, such as 0.95", lambda x: 0 < x < 1)
 
 
 def fit(answers: Iterable[Tuple[float, bool]], lapse: float = 0.02, part: float = 0.95) -> Fit:
@@ -56,12 +68,11 @@ def fit(answers: Iterable[Tuple[float, bool]], lapse: float = 0.02, part: float 
 
     Where the answers do not bound it, as where all are right, an end is 0 or infinite. Raises
     ArgumentError for fewer than 5 answers or levels that are not above 0."""
+    lapse, part = lapse_of(lapse), probability(part)
     counted = _counted(answers)
     trials = sum(right + wrong for _, right, wrong in counted)
     if trials < 5:
         raise ArgumentError(f"a threshold needs at least 5 answers; found: {trials}")
-    if not all(level > 0 and math.isfinite(level) for level, _, _ in counted):
-        raise ArgumentError("levels are differences above 0")
 
     def loss(log_threshold: float) -> float:
         threshold, total = math.exp(log_threshold), 0.0
@@ -76,8 +87,6 @@ def fit(answers: Iterable[Tuple[float, bool]], lapse: float = 0.02, part: float 
     grid = [first + (last - first) * i / 120 for i in range(121)]
     best = min(range(121), key=lambda i: loss(grid[i]))
     top = _least(loss, grid[max(best - 1, 0)], grid[min(best + 1, 120)])
-    if not 0 < part < 1:
-        raise ArgumentError(f"part: {part} is not allowed; allowed: a part above 0 and below 1, such as 0.95")
     bound = loss(top) + 0.5 * NormalDist().inv_cdf(0.5 + part / 2) ** 2  # chi-square of 1 freedom
     low = 0.0 if loss(first) <= bound else math.exp(_crossing(loss, bound, top, first))
     high = math.inf if loss(last) <= bound else math.exp(_crossing(loss, bound, top, last))
@@ -86,8 +95,9 @@ def fit(answers: Iterable[Tuple[float, bool]], lapse: float = 0.02, part: float 
 
 def _counted(answers: Iterable[Tuple[float, bool]]) -> List[Tuple[float, int, int]]:
     counts: "dict[float, List[int]]" = {}
-    for level, right in answers:
-        counts.setdefault(float(level), [0, 0])[0 if right else 1] += 1
+    for level, right in pairs_of("answers", answers, "a level and whether the answer was right"):
+        correct = number("right", right, "True or False", lambda x: x in (0, 1))
+        counts.setdefault(number_above("level", level), [0, 0])[0 if correct else 1] += 1
     return [(level, right, wrong) for level, (right, wrong) in sorted(counts.items())]
 
 
@@ -123,19 +133,20 @@ def equality(matches: Sequence[Tuple[float, float]]) -> Fit:
     stops short of the reference on either side is no part of the spread.
 
     Raises ArgumentError for fewer than 2 pairs or levels that are not above 0."""
-    if len(matches) < 2:
-        raise ArgumentError(f"a point of equality needs at least 2 pairs of matches; found: {len(matches)}")
-    if not all(level > 0 and math.isfinite(level) for pair in matches for level in pair):
-        raise ArgumentError("levels of matches are numbers above 0")
-    found = mean_interval([0.5 * (math.log(a) + math.log(b)) for a, b in matches])
-    return Fit(*(math.exp(x) for x in found), 2 * len(matches))
+    pairs = pairs_of("matches", matches, "two levels")
+    if len(pairs) < 2:
+        raise ArgumentError(f"a point of equality needs at least 2 pairs of matches; found: {len(pairs)}")
+    logs = [[math.log(number_above("level", level)) for level in pair] for pair in pairs]
+    found = mean_interval([0.5 * (a + b) for a, b in logs])
+    return Fit(*(math.exp(x) for x in found), 2 * len(pairs))
 
 
 def proportion_interval(right: int, of: int, part: float = 0.95) -> Tuple[float, float]:
     """Of a chance, by Wilson (1927)."""
-    if of < 1 or not 0 <= right <= of:
-        raise ArgumentError(f"a proportion is so many of at least 1; found: {right} of {of}")
-    z = NormalDist().inv_cdf(0.5 + part / 2)
+    right, of = whole("right", right), whole("of", of, 1)
+    if right > of:
+        raise ArgumentError(f"right: {right} is not allowed; allowed: at most {of}, as many as there are")
+    z = NormalDist().inv_cdf(0.5 + probability(part) / 2)
     centre = (right + z * z / 2) / (of + z * z)
     half = z / (of + z * z) * math.sqrt(right * (of - right) / of + z * z / 4)
     return max(0.0, centre - half), min(1.0, centre + half)
@@ -143,11 +154,10 @@ def proportion_interval(right: int, of: int, part: float = 0.95) -> Tuple[float,
 
 def mean_interval(values: Sequence[float]) -> Tuple[float, float, float]:
     """Mean and the ends of its interval of 95 %, by Student's distribution."""
-    n = len(values)
-    if n < 2:
-        raise ArgumentError(f"an interval needs at least 2 values; found: {n}")
-    mean = sum(values) / n
-    deviation = math.sqrt(sum((x - mean) ** 2 for x in values) / (n - 1))
+    found = [number("values", value) for value in items_of("values", values, "a list of at least 2 numbers", 2)]
+    n = len(found)
+    mean = sum(found) / n
+    deviation = math.sqrt(sum((x - mean) ** 2 for x in found) / (n - 1))
     half = _student(n - 1) * deviation / math.sqrt(n)
     return mean, mean - half, mean + half
 

@@ -4,10 +4,24 @@ from __future__ import annotations
 
 import math
 import random
-from typing import List, Optional, Sequence, Tuple
+from typing import Any, List, Optional, Sequence, Tuple, Union
 
 from limpid.errors import ArgumentError
-from limpid.study.fits import Fit, chance_of
+from limpid.study.fits import Fit, chance_of, lapse_of, probability
+from limpid.values import items_of, number, number_above, plain, whole
+
+
+def limits_of(low: Any, high: Any) -> Tuple[float, float]:
+    """Of levels; the upper one may be infinite."""
+    low = number("low", low, "a finite number from 0 on", lambda x: x >= 0)
+    if isinstance(high, float) and high == math.inf:
+        return low, math.inf
+    return low, number("high", high, f"a number from {low:g} on, the lower limit", lambda x: x >= low)
+
+
+def _start_within(start: Any, low: float, high: float) -> float:
+    return number("start", start, f"a number above 0, between the limits {low:g} and {high:g}",
+                  lambda x: x > 0 and low <= x <= high)  # fmt: skip
 
 
 class Staircase:
@@ -19,15 +33,12 @@ class Staircase:
                  trials: int = 80, low: float = 0.0, high: float = math.inf, down: int = 3) -> None:  # fmt: skip
         """`start`: the first level; `steps`: factors, the next one from each second reversal on;
         ends after so many `reversals`, or `trials`; levels stay between `low` and `high`."""
-        steps = [float(step) for step in steps]
-        if not (low <= start <= high and start > 0 and steps and all(step > 1 for step in steps)):
-            raise ArgumentError("a staircase needs a start between its limits, and steps, each above 1")
-        if down < 1 or reversals < 1 or trials < 1:
-            raise ArgumentError("a staircase needs at least 1 trial, 1 reversal, and 1 right answer to go down")
-        self.level = float(start)
-        self._steps, self._down = steps, down
-        self._reversals, self._trials = reversals, trials
-        self._low, self._high = low, high
+        self._low, self._high = limits_of(low, high)
+        self.level = _start_within(start, self._low, self._high)
+        factors = items_of("steps", steps, "a list of at least 1 number above 1", 1)
+        self._steps = [number_above("steps", factor, 1) for factor in factors]
+        self._reversals, self._trials = whole("reversals", reversals, 1), whole("trials", trials, 1)
+        self._down = whole("down", down, 1)
         self._right = self._direction = self._count = 0
         self.turned: List[float] = []  # levels of the reversals
 
@@ -64,12 +75,11 @@ class Quest:
     def __init__(self, guess: float, spread: float = 3.0, trials: int = 40, low: float = 0.0,
                  high: float = math.inf, lapse: float = 0.02) -> None:  # fmt: skip
         """`guess`: of the threshold, right within a factor `spread` two times of three."""
-        if not (guess > 0 and spread > 1 and trials > 0):
-            raise ArgumentError("QUEST needs a guess above 0, a spread above 1, and trials")
-        self._trials, self._low, self._high, self._lapse = trials, low, high, lapse
-        width = math.log(spread)
-        self._grid = [math.log(guess) + width * 4 * (i / 200 - 1) for i in range(401)]
-        self._log = [-0.5 * ((x - math.log(guess)) / width) ** 2 for x in self._grid]
+        middle, width = math.log(number_above("guess", guess)), math.log(number_above("spread", spread, 1))
+        self._trials, self._lapse = whole("trials", trials, 1), lapse_of(lapse)
+        self._low, self._high = limits_of(low, high)
+        self._grid = [middle + width * 4 * (i / 200 - 1) for i in range(401)]
+        self._log = [-0.5 * ((x - middle) / width) ** 2 for x in self._grid]
         self._count = 0
 
     @property
@@ -97,6 +107,7 @@ class Quest:
 
     def interval(self, part: float = 0.95) -> Tuple[float, float]:
         """Within which the threshold is with this probability."""
+        part = probability(part)
         ends, total = [], 0.0
         wanted = [(1 - part) / 2, (1 + part) / 2]
         for x, weight in zip(self._grid, self._weights()):
@@ -116,12 +127,10 @@ class Quest:
 class ConstantStimuli:
     """Each level equally often, in an order of chance that is the same for the same seed."""
 
-    def __init__(self, levels: Sequence[float], repeats: int, seed: str) -> None:
-        levels = [float(level) for level in levels]
-        if not levels or repeats < 1:
-            raise ArgumentError("constant stimuli need levels, each at least once")
-        self._left = [level for level in levels for _ in range(repeats)]
-        random.Random(seed).shuffle(self._left)
+    def __init__(self, levels: Sequence[float], repeats: int, seed: Union[str, int]) -> None:
+        found = [number("levels", level) for level in items_of("levels", levels, "a list of at least 1 number", 1)]
+        self._left = [level for level in found for _ in range(whole("repeats", repeats, 1))]
+        random.Random(plain("seed", seed)).shuffle(self._left)
 
     @property
     def done(self) -> bool:
@@ -145,11 +154,11 @@ class Adjustment:
                  low: float = 0.0, high: float = math.inf) -> None:  # fmt: skip
         """Levels stay between `low` and `high`; it ends after so many answers, `trials`, whether it is
         as the standard or not."""
-        if not (start > 0 and low <= start <= high and step >= finest > 1):
-            raise ArgumentError("an adjustment needs a start above 0 between its limits, and steps above 1")
-        self.level, self._step, self._finest = start, step, finest
-        self._low, self._high = low, high
-        self._direction, self._trials, self._count = 0, trials, 0
+        self._low, self._high = limits_of(low, high)
+        self.level = _start_within(start, self._low, self._high)
+        self._finest = finest = number_above("finest", finest, 1)
+        self._step = number("step", step, f"a finite number from {finest:g} on, the finest", lambda x: x >= finest)
+        self._direction, self._trials, self._count = 0, whole("trials", trials, 1), 0
         self.matched = False  # the participant has said that it is the same
         self.at_limit = False  # the last answer has led to one
 

@@ -11,8 +11,9 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 
 from limpid.client import Client
 from limpid.errors import ArgumentError, ProgramError, RequestError
+from limpid.study.fits import lapse_of
 from limpid.study.sheet import program_version
-from limpid.values import number, plain, settings_of
+from limpid.values import number_above, plain, settings_of
 
 
 class StimulusError(RequestError):
@@ -51,7 +52,7 @@ class Person:
 
     def __init__(self, loop: Client, seconds: float = 4.0) -> None:
         """`seconds`: how long an interval is [s]."""
-        self._loop, self._seconds = loop, number("seconds", seconds)
+        self._loop, self._seconds = loop, number_above("seconds", seconds)
         self._settings: Dict[str, Any] = {}  # of all stimuli, once a study has begun
         self._begun = False
         self._session, self._scene = "", ""  # of a trial that is adjusted
@@ -158,18 +159,16 @@ class Simulated:
                  percept: Optional[Callable[[Stimulus], float]] = None) -> None:  # fmt: skip
         """`threshold`: the difference of 75 % right answers, in the study's unit. `percept`: what is
         perceived of a stimulus without the error; the default is its level."""
-        if number("threshold", threshold) <= 0 or not 0 <= number("lapse", lapse) < 1:
-            raise ArgumentError("a participant has a threshold above 0 and a lapse from 0 to below 1")
-        self.threshold = threshold
+        self.threshold = number_above("threshold", threshold)
         # Phi(d / (sqrt(2) sigma)) is 75 % at the threshold.
-        self.sigma = threshold / (0.6744897501960817 * math.sqrt(2))
-        self.lapse, self._seed = lapse, plain("seed", seed)
+        self.sigma = self.threshold / (0.6744897501960817 * math.sqrt(2))
+        self.lapse, self._seed = lapse_of(lapse), plain("seed", seed)
         self._felt = percept
 
     def begin(self, settings: Mapping[str, Any]) -> Tuple[Dict[str, Any], str]:
         """Returns what the answers are given under, the truth about this participant among it, and the
         program's version."""
-        truth = {"threshold": float(self.threshold), "lapse": float(self.lapse), "seed": self._seed,
+        truth = {"threshold": self.threshold, "lapse": self.lapse, "seed": self._seed,
                  "perceives": "levels" if self._felt is None else "runs of the loop"}  # fmt: skip
         return {"settings": dict(settings), "truth": truth, "arm": None}, program_version()
 

@@ -15,11 +15,11 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Seque
 
 from limpid.errors import ArgumentError, ProgramError, RecordingError, RequestError
 from limpid.study.answers import Answers, StudyError
-from limpid.study.methods import Adjustment, ConstantStimuli, Quest, Staircase
+from limpid.study.methods import Adjustment, ConstantStimuli, Quest, Staircase, limits_of
 from limpid.study.orders import order_for
 from limpid.study.participants import Person, Shown, Simulated, Stimulus, StimulusError
 from limpid.study.sheet import Sheet
-from limpid.values import number, plain, settings_of, text_of, whole
+from limpid.values import number, number_above, plain, settings_of, text_of, whole
 
 WANTED = ("less", "more", "reference", "same")  # by the keys 1 to 4 of who adjusts
 COLUMNS = ("study", "participant", "row", "kind", "block", "condition", "trial", "practice", "level",
@@ -140,10 +140,11 @@ class Study:
 
     def blocks(self, conditions: Sequence[str]) -> Iterator[str]:
         """The conditions in this participant's order, with breaks in between."""
-        for i, condition in enumerate(order_for(self.participant, conditions)):
+        order = order_for(self.participant, conditions)
+        for i, condition in enumerate(order):
             self._block = i + 1
             if i > 0:
-                self.tell(f"Take a break. Part {i + 1} of {len(conditions)} comes next.")
+                self.tell(f"Take a break. Part {i + 1} of {len(order)} comes next.")
             yield condition
 
     def tell(self, text: str) -> None:
@@ -181,6 +182,7 @@ class Study:
         Returns the answers that count: (level, right)."""
         self.sheet.ask(condition, question)
         standard = number("standard", standard)
+        practice, pause_every = whole("practice", practice), whole("pause_every", pause_every)
         counted: List[Tuple[float, bool]] = []
         first_level, trial = method.level, 0
         while trial < practice or not method.done:
@@ -220,10 +222,14 @@ class Study:
 
         Returns the pairs for equality(). A trial that takes 100 keys is left, and its pair with it.
         Raises ArgumentError for a number of trials that is not even."""
-        if trials < 2 or trials % 2:
+        practice, pause_every = whole("practice", practice), whole("pause_every", pause_every)
+        trials = whole("trials", trials, 2)
+        if trials % 2:
             raise ArgumentError(f"trials come in pairs, from above and from below; found: {trials}")
+        low, high = limits_of(low, high)
+        spread = number("spread", spread, "a finite number from 1 on", lambda x: x >= 1)
+        middle = number_above("around", reference.level if around is None else around)
         self.sheet.ask(condition, question)
-        middle = number("around", reference.level if around is None else around)
         found: List[Optional[float]] = []
         above = False
         for trial in range(practice + trials):

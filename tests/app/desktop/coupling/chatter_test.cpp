@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -126,6 +127,128 @@ TEST(Chatter, IsNotSeenWhereHandsAreCalm) {
       EXPECT_EQ(look_at(plan).first, -1) << scene << " " << info(kind).key;
     }
   }
+}
+
+// A history made by hand: one joint of one of two lanes goes to and fro, and the coupling there
+// gives energy.
+struct Shaken {
+  int lane = 0, joint = 0;
+  double frequency = 40;          // [Hz]
+  double power = 0.02;            // [W]
+  double from = 0.01, to = 0.01;  // amplitude at the begin and at the end [rad]
+  double compensation = 0.5;      // power for the device's own forces [W]
+};
+class MadeHistory {
+ public:
+  static constexpr double kTick = 0.001;
+
+  int count() const { return channels_.count(); }
+  History& history() { return history_; }
+  // The square of the amplitude changes evenly, as the spring's energy does.
+  void go_on(double seconds, const Shaken& how) {
+    const int ticks = static_cast<int>(std::lround(seconds / kTick));
+    for (int i = 0; i < ticks; ++i) {
+      std::vector<double> values(static_cast<std::size_t>(2 * count()), 0.0);
+      const auto at = [&](Channel channel, int more = 0) -> double& {
+        return values[static_cast<std::size_t>(how.lane * count() + static_cast<int>(channel) +
+                                               more)];
+      };
+      const double part = static_cast<double>(i) / ticks;
+      const double square = (1 - part) * how.from * how.from + part * how.to * how.to;
+      for (int j = 0; j < 3; ++j) {
+        at(Channel::joints, j) = 1e-4 * std::sin(2 * std::numbers::pi * 3 * time_);
+      }
+      at(Channel::joints, how.joint) =
+          std::sqrt(square) * std::sin(2 * std::numbers::pi * how.frequency * time_);
+      given_ += how.power * kTick;
+      compensated_ += how.compensation * kTick;
+      at(Channel::energy_total) = given_ + compensated_;
+      at(Channel::energy_compensation) = compensated_;
+      history_.append(time_, values);
+      time_ += kTick;
+    }
+  }
+  void leave_out(double seconds) { time_ += seconds; }
+
+ private:
+  TraceChannels channels_{RowLayout(3)};
+  History history_{
+      {.channels = 2 * TraceChannels(RowLayout(3)).count(), .seconds = 60, .tick = kTick}};
+  double time_ = 0, given_ = 0, compensated_ = 0;
+};
+const Eigen::VectorXd kMadeSprings = Eigen::Vector3d(2, 3, 4);  // [N m/rad]
+
+// The power is that of E_c without what is for the device's own forces.
+TEST(Chatter, IsMeasuredInTheJointThatShakesMost) {
+  for (const int lane : {0, 1}) {
+    for (int joint = 0; joint < 3; ++joint) {
+      for (const double frequency : {40.0, 80.0}) {
+        MadeHistory made;
+        Chatter chatter;
+        const auto look = [&] {
+          chatter.follow(made.history(), made.history().end(), lane * made.count(), kMadeSprings);
+        };
+        made.go_on(0.999, {.lane = lane, .joint = joint, .frequency = frequency});
+        look();
+        EXPECT_FALSE(chatter.there()) << "three stretches after the first are not over";
+        made.go_on(0.001, {.lane = lane, .joint = joint, .frequency = frequency});
+        look();
+        EXPECT_TRUE(chatter.there()) << "lane " << lane << ", joint " << joint;
+        EXPECT_NEAR(chatter.power(), 0.02, 1e-4) << "lane " << lane << ", joint " << joint;
+        EXPECT_NEAR(chatter.frequency(), frequency, 2.1) << "lane " << lane << ", joint " << joint;
+        Chatter other;
+        other.follow(made.history(), made.history().end(), (1 - lane) * made.count(), kMadeSprings);
+        EXPECT_FALSE(other.there()) << "the other lane is calm";
+      }
+    }
+  }
+}
+
+TEST(Chatter, IsFasterThanAHandAndGivesMoreThanNoise) {
+  const auto there = [](const Shaken& how) {
+    MadeHistory made;
+    made.go_on(3, how);
+    Chatter chatter;
+    chatter.follow(made.history(), made.history().end(), 0, kMadeSprings);
+    return chatter.there();
+  };
+  EXPECT_TRUE(there({.frequency = 24}));
+  EXPECT_FALSE(there({.frequency = 12})) << "a hand can shake so";
+  EXPECT_TRUE(there({.power = 0.006}));
+  EXPECT_FALSE(there({.power = 0.004}));
+  EXPECT_FALSE(there({.power = -0.02})) << "it takes energy";
+  // The spring of joint 1 holds k x^2 / 2, k a^2 / 4 in the mean: 50 mJ at 0.3162 rad.
+  EXPECT_FALSE(there({.power = 0.016, .from = 0.31623, .to = 0})) << "the spring gives it back";
+  EXPECT_TRUE(there({.power = 0.032, .from = 0.31623, .to = 0})) << "twice as much";
+  EXPECT_TRUE(there({.power = 0.016, .from = 0, .to = 0.31623})) << "the spring takes as well";
+}
+
+TEST(Chatter, IsOverWithAPauseOrOtherSprings) {
+  MadeHistory made;
+  Chatter chatter;
+  const auto there = [&](const Eigen::VectorXd& springs) {
+    chatter.follow(made.history(), made.history().end(), 0, springs);
+    return chatter.there();
+  };
+  made.go_on(1.5, {});
+  ASSERT_TRUE(there(kMadeSprings));
+  made.leave_out(0.4);
+  made.go_on(0.25, {});
+  EXPECT_TRUE(there(kMadeSprings)) << "the stretch before the pause";
+  made.go_on(0.25, {});
+  EXPECT_TRUE(there(kMadeSprings));
+  made.go_on(0.1, {});
+  made.leave_out(0.4);
+  made.go_on(0.4, {});
+  EXPECT_FALSE(there(kMadeSprings)) << "a stretch that stood still in between says nothing";
+  made.go_on(1.25, {});
+  EXPECT_TRUE(there(kMadeSprings));
+  EXPECT_FALSE(there(2 * kMadeSprings)) << "other settings are judged anew";
+  made.go_on(1.25, {});
+  EXPECT_TRUE(there(2 * kMadeSprings));
+  chatter.start_over(made.history().end());
+  EXPECT_FALSE(chatter.there());
+  EXPECT_EQ(chatter.power(), 0);
 }
 
 // A recording is played from anywhere: chatter is there where it was, and not before it began.

@@ -9,6 +9,7 @@
 #include "tests/app/desktop/widgets/read_panel.h"
 #include "tests/support/built_in.h"
 #include "tests/support/computer.h"
+#include "tests/support/drawn_ink.h"
 #include "tests/support/faultless_context.h"
 
 namespace limpid {
@@ -202,6 +203,73 @@ TEST_F(NumbersOfRuns, ComeAndGoByTheirButtons) {
   draw_runs(2, false);
   EXPECT_FALSE(find("+ run")) << "of a recording";
   EXPECT_FALSE(find("? run"));
+}
+
+TEST_F(NumbersOfRuns, ChooseTheRunThatSlidersChange) {
+  stage_.reset();
+  const int channels = TraceChannels(test::omni(), RowLayout(3), {}).count();
+  History history({.channels = 3 * channels, .seconds = 1, .tick = 0.01});
+  stage_ =
+      std::make_unique<Stage>(test::omni(), SceneDocument{}, MeshModels{}, std::move(history), 1);
+  stage_->name_runs(
+      {{"standard", "tank", "third"},
+       true,
+       {static_cast<int>(CouplingKind::standard), static_cast<int>(CouplingKind::tank), -1}});
+  draw_runs(3);
+  const auto first = find("standard"), second = find("tank"), third = find("third");
+  ASSERT_TRUE(first && second && third) << words();
+  EXPECT_NEAR(first->middle().y, second->middle().y, 1) << "in one line";
+  EXPECT_NEAR(second->middle().y, third->middle().y, 1);
+  EXPECT_LT(first->max.x, second->min.x);
+  EXPECT_NEAR(second->middle().x - first->middle().x, third->middle().x - second->middle().x, 3);
+  const auto inked = [](const test::DrawnText& name, float down, Rgb rgb) {
+    return test::inked({name.middle().x, name.max.y + down},
+                       [=](ImU32 rgba) { return rgba == colour(rgb); });
+  };
+  const auto edged = [&](const test::DrawnText& name, CouplingKind kind) {
+    for (float down = 0; down < 12; down += 0.5f) {
+      if (inked(name, down, law_ink(current_palette(), static_cast<int>(kind)))) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(edged(*first, CouplingKind::standard));
+  EXPECT_TRUE(edged(*second, CouplingKind::tank));
+  EXPECT_FALSE(edged(*third, CouplingKind::standard)) << "its law is not known";
+  EXPECT_TRUE(inked(*first, 0.5f, current_palette().frame_active)) << "it is chosen";
+  EXPECT_FALSE(inked(*second, 0.5f, current_palette().frame_active));
+  EXPECT_EQ(hint("tank"), "Click here. Then the sliders below change the run tank.");
+  click("third");
+  EXPECT_EQ(edited_, 2u);
+  EXPECT_TRUE(inked(*find("third"), 0.5f, current_palette().frame_active));
+  EXPECT_FALSE(inked(*find("standard"), 0.5f, current_palette().frame_active));
+  click("tank");
+  EXPECT_EQ(edited_, 1u);
+  draw_runs(3, false);
+  EXPECT_FALSE(find("tank")) << "nothing is set of a recording";
+}
+
+// Labels stand below each other at the left, and numbers end where their columns end.
+TEST_F(NumbersOfRuns, StandInColumns) {
+  draw_runs(2, true, 1e3f);
+  float below = 0, left = 0, ends[2] = {0, 0};
+  for (const char* what : {"|x_E| mrad", "|f1| N m", "|f2| N m", "E_c mJ"}) {
+    const auto at = find(what);
+    ASSERT_TRUE(at) << what;
+    EXPECT_GT(at->min.y, below) << what;
+    below = at->max.y;
+    EXPECT_EQ(at->colour, colour(current_palette().muted)) << what;
+    if (left == 0) left = at->min.x;
+    EXPECT_NEAR(at->min.x, left, 2) << what;
+    std::size_t column = 0;
+    for (const test::DrawnText& each : test::drawn_texts()) {
+      const bool in_line = std::abs(each.middle().y - at->middle().y) < 4;
+      if (!in_line || each.min.x <= at->max.x || column == 2) continue;
+      if (ends[column] == 0) ends[column] = each.max.x;
+      EXPECT_NEAR(each.max.x, ends[column++], 2) << what << ": " << each.text;
+      EXPECT_EQ(each.colour, colour(current_palette().text)) << what;
+    }
+    EXPECT_EQ(column, 2u) << what;
+  }
 }
 
 }  // namespace

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/dynamics/arm.h"
 #include "tests/app/desktop/widgets/read_panel.h"
 #include "tests/support/built_in.h"
+#include "tests/support/drawn_ink.h"
 
 namespace limpid {
 namespace {
@@ -105,6 +108,64 @@ TEST_F(TimingOfADevice, SaysWhatPaceAndDelayCostInStiffness) {
               HasSubstr("the proposed law would render without delay. Reason for the limit: " +
                         late.wall(p_.kind).bound));
 }
+
+// Walls are computed four times a second, not with every picture.
+TEST_F(TimingOfADevice, ReckonsItsWallsFourTimesASecond) {
+  draw();
+  const std::string before = value("stiffest wall");
+  arm_.delay = 0.004;
+  frames(3);
+  EXPECT_EQ(value("delay"), "4.00 ms, measured");
+  EXPECT_EQ(value("stiffest wall"), before);
+  frames(15);  // 0.3 s
+  EXPECT_NE(value("stiffest wall"), before);
+  const TipLimits late = tip_limits(arm_, pose_, p_, scene_);
+  EXPECT_THAT(value("stiffest wall"),
+              testing::StartsWith(fmt::format("{:.0f} of ", late.wall(p_.kind).stiffness)));
+}
+
+TEST_F(TimingOfADevice, SaysWhatEachFigureIs) {
+  read_every(1e-3);
+  draw();
+  EXPECT_TRUE(find("The device"));
+  for (const auto& [label, help] :
+       {std::pair("readings", "How often the device reports its position"),
+        {"jitter", "Standard deviation of the time between two readings"},
+        {"delay", "Delay from a reading to the torque computed from it."},
+        {"stiffest wall", "First number: the stiffest wall with this delay."},
+        {"stiffest passive wall", "b_d / (T/2 + delay) is the stiffest wall"}}) {
+    EXPECT_THAT(hint(label), HasSubstr(help)) << label;
+  }
+}
+
+// Bars of 50 stretches of time, 1 us to 100 ms by ratios: the n-th begins at 10^(n/10) us.
+class HistogramOfTimes : public ReadPanel {
+ protected:
+  void draw(const LatencyHistogram& times, double late) {
+    show([this, &times, late] {
+      at_ = ImGui::GetCursorScreenPos();
+      width_ = ImGui::GetContentRegionAvail().x;
+      draw_time_histogram(times, late, "What it shows.");
+      below_ = ImGui::GetCursorScreenPos().y;
+    });
+  }
+  // Returns how tall the n-th bar is, and in which of two colours; 0 and 0 without a bar.
+  std::pair<float, ImU32> bar(int n) const {
+    const float step = width_ / 50, x = at_.x + step * static_cast<float>(n) + 0.4f * step;
+    for (const ImU32 ink : {colour(current_palette().muted), colour(current_palette().broken)}) {
+      float tall = 0;
+      const auto inked = [&](float up) {
+        return test::inked({x, at_.y + kHigh - up}, [=](ImU32 rgba) { return rgba == ink; });
+      };
+      while (inked(tall + 0.25f)) tall += 0.25f;
+      if (tall > 0) return {tall, ink};
+    }
+    return {0, 0};
+  }
+  static constexpr float kHigh = 32;  // [px]
+  ImVec2 at_{};
+  float width_ = 0, below_ = 0;
+};
 
 }  // namespace
 }  // namespace limpid

@@ -6,9 +6,12 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -108,6 +111,43 @@ TEST_F(AFilm, SaysWhyItFailed) {
   EXPECT_EQ(why("fails"), "there is no such session");
   EXPECT_EQ(part_, 0.5);
   EXPECT_THAT(why("dies"), testing::HasSubstr("ended too early"));
+}
+
+// The system's own words say why no process can be begun.
+TEST_F(AFilm, SaysWhyItsProcessCannotBegin) {
+  const auto why = [&](const std::vector<std::string>& options) -> std::string {
+    try {
+      film_beside("goes well", out_, options, stop_, part_);
+    } catch (const std::runtime_error& e) {
+      return e.what();
+    }
+    return "nothing";
+  };
+  const int priority = getpriority(PRIO_PROCESS, 0);
+  EXPECT_EQ(why({"--too-long", std::string(1 << 20, 'x')}),
+            std::string("the video cannot be made: ") + std::strerror(E2BIG));
+  rlimit files{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &files), 0);
+  rlimit none = files;
+  none.rlim_cur = 3;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const std::string without_files = why({});
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files), 0);
+  EXPECT_EQ(without_files, std::string("the video cannot be made: ") + std::strerror(EMFILE));
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), priority) << "the window's own";
+  EXPECT_EQ(why({}), "nothing") << "it goes well again";
+}
+
+// Each film leaves as many files open as there were before.
+TEST_F(AFilm, LeavesNoFileOpen) {
+  const auto open_files = [] {
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return std::distance(begin(all), end(all));
+  };
+  const auto before = open_files();
+  for (const char* how : {"goes well", "words"}) EXPECT_TRUE(make(how));
+  EXPECT_ANY_THROW(make("fails"));
+  EXPECT_EQ(open_files(), before);
 }
 
 }  // namespace

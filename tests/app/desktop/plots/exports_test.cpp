@@ -96,6 +96,7 @@ TEST_F(AnExport, OfAPictureIsAsLargeAsItIsPrinted) {
   ASSERT_GT(png.size(), 60u);
   EXPECT_NEAR(static_cast<double>(number_at(png, 16)), 100 / 25.4 * 200, 2);
   EXPECT_NEAR(static_cast<double>(number_at(png, 20)), 50 / 25.4 * 200, 2);
+  EXPECT_THAT(png, HasSubstr(std::string("tEXtDescription\0limpid ", 23)));
   const std::size_t physical = png.find("pHYs");
   ASSERT_NE(physical, std::string::npos);
   EXPECT_EQ(number_at(png, physical + 4), 7874u) << "200 dots an inch, in dots a metre";

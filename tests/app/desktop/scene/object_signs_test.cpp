@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "app/desktop/scene/scene_editor.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "tests/app/plot/imgui_frames.h"
@@ -183,6 +184,88 @@ TEST_F(SignsOfObjects, HaveIconsOfTheirShapesWithinTheirRoom) {
                              Shape{Capsule{}}, Shape{Mesh{}}}) {
     const ScreenRect box = box_of(icon(shape));
     EXPECT_NEAR(middle.x - box.min.x, box.max.x - middle.x, 1.5) << shape_name(shape);
+  }
+}
+
+// Objects that can be added fit into a hand, and those that move weigh no more than it lifts.
+TEST(NewObjects, HaveTheSizesOfThingsForAHand) {
+  for (const NewObject& each : new_objects()) {
+    const Bounds box = bounds_of(each.object, nullptr);
+    if (box.isEmpty()) continue;
+    EXPECT_GE(box.sizes().minCoeff(), 0.02) << each.label;
+    EXPECT_LE(box.sizes().maxCoeff(), 0.08) << each.label;
+    EXPECT_TRUE(each.object.color) << each.label << " is seen on a table";
+    if (!each.object.body) continue;
+    EXPECT_GE(each.object.body->mass, 0.01) << each.label;
+    EXPECT_LE(each.object.body->mass, 0.05) << each.label;
+    EXPECT_EQ(each.object.material.stiffness, 2000) << each.label << ": hard enough to be pushed";
+  }
+}
+
+// A box has twelve edges, between the corners of its pose.
+TEST_F(SignsOfObjects, OutlineAllEdgesOfABox) {
+  Object box{.pose = pose_at(Vec3(0.03, 0.02, 0.01)), .shape = Box{{0.12, 0.06, 0.08}}};
+  box.pose.linear() =
+      (Eigen::AngleAxisd(0.4, Vec3::UnitX()) * Eigen::AngleAxisd(0.5, Vec3::UnitZ()))
+          .toRotationMatrix();
+  outline(box);
+  const auto inked = [&](const Vec3& at) {
+    const ImVec2 place = seen(box.pose * at);
+    for (float x = -0.6f; x < 1.7f; x += 0.2f) {
+      for (float y = -0.6f; y < 1.7f; y += 0.2f) {
+        if (test::inked({place.x + x, place.y + y},
+                        [](ImU32 ink) { return ink == colour(current_palette().accent); })) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  const Vec3 half(0.06, 0.03, 0.04);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double a : {-1.0, 1.0}) {
+      for (const double b : {-1.0, 1.0}) {
+        for (const double part : {-0.7, 0.0, 0.7}) {
+          Vec3 at;
+          at[axis] = part;
+          at[(axis + 1) % 3] = a;
+          at[(axis + 2) % 3] = b;
+          EXPECT_TRUE(inked(at.cwiseProduct(half)))
+              << axis << ", " << a << ", " << b << ", " << part;
+        }
+      }
+    }
+  }
+}
+
+// A tube has two rings and four lines between them; a capsule has balls at its ends.
+TEST_F(SignsOfObjects, OutlineTubesByRingsAndLines) {
+  const Pose upright = pose_at(Vec3(0.02, 0, 0.01));
+  const auto inked = [&](const Vec3& at) {
+    const ImVec2 place = seen(upright * at);
+    for (float x = -0.6f; x < 1.7f; x += 0.2f) {
+      for (float y = -0.6f; y < 1.7f; y += 0.2f) {
+        if (test::inked({place.x + x, place.y + y},
+                        [](ImU32 ink) { return ink == colour(current_palette().accent); })) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  for (const bool capsule : {false, true}) {
+    outline({.pose = upright,
+             .shape = capsule ? Shape{Capsule{0.03, 0.1}} : Shape{Cylinder{0.03, 0.1}}});
+    for (const double z : {-0.04, 0.0, 0.04}) {
+      for (const Vec3& side : {Vec3(0.03, 0, z), Vec3(-0.03, 0, z), Vec3(0, 0.03, z)}) {
+        EXPECT_TRUE(inked(side)) << capsule << ": a line at " << side.transpose();
+      }
+      EXPECT_FALSE(inked({0.015, 0.026, z})) << capsule << ": no line at " << z;
+    }
+    for (const double end : {-0.05, 0.05}) {
+      EXPECT_TRUE(inked({0.03 * std::cos(1.0), 0.03 * std::sin(1.0), end})) << "a ring";
+      EXPECT_EQ(inked({0, 0, 1.6 * end}), capsule) << "a ball's rim";
+    }
   }
 }
 

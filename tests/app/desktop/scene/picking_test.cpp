@@ -7,6 +7,7 @@
 #include <random>
 
 #include "app/desktop/scene/scene_editor.h"
+#include "core/touch/pull_link.h"
 #include "core/touch/triangle_mesh.h"
 
 namespace limpid {
@@ -177,6 +178,83 @@ TEST(Picking, LooksForWhatMovesWhereItIs) {
   EXPECT_EQ(placed_now(all.scene, 1, {{there}}).pose.matrix(), there.matrix());
   EXPECT_EQ(placed_now(all.scene, 0, {{there}}).pose.translation().y(), 0.2);
   EXPECT_EQ(all.under({0.5, 0, 0}, {0, 0, 0}), 1u) << "where it starts, as long as nobody knows";
+}
+
+// A shape is met where a walk along the ray gets into it, whichever function is asked.
+TEST(Picking, MeetsShapesAsFarAwayAsTheyAre) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto vec = [&] { return Vec3(any(random), any(random), any(random)); };
+  int met = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Shape shapes[] = {Sphere{.radius = 0.03}, Box{.size = {0.03, 0.05, 0.08}},
+                            Cylinder{.radius = 0.02, .length = 0.06},
+                            Capsule{.radius = 0.02, .length = 0.05}};
+    const Shape& shape = shapes[i % 4];
+    const Pose pose = turned(0.05 * vec(), vec(), 3 * any(random));
+    Shapes all;
+    all.add("it", shape, pose);
+    const Vec3 from = Vec3(0.3, 0.1, 0.2) + 0.1 * vec();
+    const Vec3 way = (pose.translation() + 0.015 * vec() - from).normalized();
+    const auto inside = [&](double s) {
+      return distance(shape, pose.inverse() * (from + s * way));
+    };
+    double in = 0;
+    while (in < 1 && inside(in) > 0) in += 1e-4;
+    double out = in;
+    while (out < 1 && inside(out) <= 0) out += 1e-4;
+    if (in >= 1 || out - in < 2e-3) continue;  // a near miss
+    ++met;
+    EXPECT_TRUE(covered({from, way}, in + 3e-4, all.scene, {})) << i;
+    EXPECT_FALSE(covered({from, way}, in - 3e-4, all.scene, {})) << i;
+    const auto aim = aim_along({from, way}, all.scene, {});
+    ASSERT_TRUE(aim) << i;
+    const double deep = std::min(0.01, (out - in) / 2);
+    EXPECT_LT((aim->point - (from + (in + deep) * way)).norm(), 4e-4) << i;
+    all.scene.objects[0].body = Body{};
+    const auto pull = body_under({from, way}, all.scene, all.models, {});
+    ASSERT_TRUE(pull) << i;
+    EXPECT_LT((pull->target - (from + in * way)).norm(), 3e-4) << i;
+    EXPECT_LT((pose * pull->point - pull->target).norm(), 1e-12) << i;
+    const Vec3 above = pose.translation() + Vec3(0.004 * any(random), 0.004 * any(random), 0.2);
+    double drop = 0;
+    const auto below = [&](double s) {
+      return distance(shape, pose.inverse() * (above - s * Vec3::UnitZ()));
+    };
+    while (drop < 0.5 && below(drop) > 0) drop += 1e-4;
+    const auto found = drop_below(above, all.scene, {});
+    ASSERT_TRUE(found) << i;
+    EXPECT_NEAR(*found, drop, 3e-4) << i;
+  }
+  EXPECT_GT(met, 120);
+}
+
+// The pull of the mouse is the spring's of the body's own mass, whichever body it is.
+TEST(Picking, PullsEachBodyByItsOwnMass) {
+  Scene scene;
+  scene.add({.name = "post", .shape = Sphere{0.01}});
+  scene.add({.name = "light", .shape = Sphere{0.01}, .body = Body{.mass = 0.02}});
+  scene.add({.name = "heavy", .shape = Sphere{0.01}, .body = Body{.mass = 0.2}});
+  const std::array<Vec3, 2> pull{Vec3(0.1, 0, 0), Vec3(0.1, 0.03, 0.04)};
+  const double light = pull_on(scene, 0, pull), heavy = pull_on(scene, 1, pull);
+  EXPECT_GT(light, 0);
+  EXPECT_EQ(light, PullLink::force_of(0.02, 0.05));
+  EXPECT_EQ(heavy, PullLink::force_of(0.2, 0.05));
+  EXPECT_EQ(pull_on(scene, 2, pull), 0) << "there are two";
+  EXPECT_EQ(pull_on(scene, 1, {pull[0], pull[0]}), PullLink::force_of(0.2, 0));
+}
+
+TEST(Picking, MeetsPartsAndStopsAtWhatHasNoShape) {
+  Shapes all;
+  const auto place = all.add("it", Sphere{.radius = 0.01}, pose_at({0, 0, 0}));
+  all.scene.objects[place].parts = {{pose_at(Vec3(0, 0.1, 0)), Box{Vec3::Constant(0.02)}}};
+  all.add("stop", JointStop{}, pose_at({0, -0.1, 0}));
+  EXPECT_EQ(all.under({0.5, 0.1, 0}, {0, 0.1, 0}), place) << "its part";
+  EXPECT_EQ(all.under({0.5, 0.05, 0}, {0, 0.05, 0}), std::nullopt) << "between both";
+  EXPECT_EQ(all.under({0.5, -0.1, 0}, {0, -0.1, 0}), std::nullopt) << "a stop is nowhere";
+  all.add("floor", Plane{}, pose_at({0, 0, -0.1}));
+  EXPECT_TRUE(all.under({0.49, 0, 0}, {0.49, 0, -0.1})) << "as far as it is drawn";
+  EXPECT_FALSE(all.under({0.51, 0, 0}, {0.51, 0, -0.1}));
 }
 
 // Lines through the objects' middles, whose way into each is known.

@@ -170,6 +170,40 @@ TEST(SceneEditor, NeverHasTwoObjectsOfOneName) {
   EXPECT_EQ(editor.scene().objects[kBlock + 1].name, "gear 3") << "it needs one";
 }
 
+// Names count on from the number that they end in.
+TEST(SceneEditor, GivesCopiesTheNextNumber) {
+  const auto after = [](std::vector<std::string> there, const std::string& wanted) {
+    SceneEditor editor;
+    editor.open({}, {});
+    for (const std::string& name : there) editor.add({.name = name, .shape = Sphere{}});
+    editor.add({.name = wanted, .shape = Sphere{}});
+    return editor.selected_object()->name;
+  };
+  EXPECT_EQ(after({"gear"}, "gear"), "gear 2");
+  EXPECT_EQ(after({"gear", "gear 2"}, "gear 2"), "gear 3");
+  EXPECT_EQ(after({"gear", "gear 2", "gear 9"}, "gear 9"), "gear 3") << "the first that is free";
+  EXPECT_EQ(after({"R2"}, "R2"), "R2 2") << "no number of its own";
+  EXPECT_EQ(after({"7"}, "7"), "7 2");
+  EXPECT_EQ(after({"a 1 b"}, "a 1 b"), "a 1 b 2");
+  EXPECT_EQ(after({}, ""), "object 2") << "it needs a name";
+  EXPECT_EQ(after({"object 2"}, ""), "object 3");
+}
+
+// Fewer pictures than objects are filled up, as each object has a place for one.
+TEST(SceneEditor, HasAPlaceForThePictureOfEachObject) {
+  SceneDocument document;
+  document.scene.add({.name = "top", .shape = Plane{}});
+  document.scene.add({.name = "ball", .shape = Sphere{}});
+  SceneEditor editor;
+  editor.open(document, {});
+  EXPECT_EQ(editor.models().size(), 2u);
+  editor.duplicate(1);
+  EXPECT_EQ(editor.models().size(), 3u);
+  editor.remove(0);
+  EXPECT_EQ(editor.models().size(), 2u);
+  EXPECT_EQ(editor.selected(), std::nullopt);
+}
+
 TEST(SceneEditor, KnowsWhetherThereIsAnythingToSave) {
   SceneEditor editor;
   editor.open({}, {});

@@ -76,5 +76,34 @@ TEST(HeldKeys, ModifiersAndUnknownKeysAreNeverStale) {
   }
 }
 
+TEST(HeldKeys, KeyThatWasLetGoBeforeTheFocusChangesIsNotStale) {
+  HeldKeys keys;
+  for (const int key : {0, GLFW_KEY_O, HeldKeys::kKeys - 1}) {
+    keys.press(key);
+    keys.release(key);
+  }
+  keys.press(GLFW_KEY_P);
+  keys.set_focus({.playback = true});
+  for (const int key : {0, GLFW_KEY_O, HeldKeys::kKeys - 1}) EXPECT_FALSE(keys.stale(key)) << key;
+  EXPECT_TRUE(keys.stale(GLFW_KEY_P));
+  keys.release(GLFW_KEY_P);
+  EXPECT_FALSE(keys.stale(GLFW_KEY_P)) << "its character may come later";
+  keys.set_focus({.selection = true});
+  EXPECT_FALSE(keys.stale(GLFW_KEY_P));
+  EXPECT_FALSE(keys.stale(-1));
+  EXPECT_FALSE(keys.stale(HeldKeys::kKeys));
+}
+
+TEST(HeldKeys, ModifiersAreShiftControlAltAndSuperOfBothSides) {
+  std::set<int> modifiers;
+  for (int key = 0; key <= GLFW_KEY_LAST; ++key) {
+    if (is_modifier(key)) modifiers.insert(key);
+  }
+  EXPECT_EQ(modifiers,
+            (std::set<int>{GLFW_KEY_LEFT_SHIFT, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_LEFT_ALT,
+                           GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SHIFT, GLFW_KEY_RIGHT_CONTROL,
+                           GLFW_KEY_RIGHT_ALT, GLFW_KEY_RIGHT_SUPER}));
+}
+
 }  // namespace
 }  // namespace limpid

@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "devices/files/session/session_file.h"
 #include "tests/app/desktop/shell/whole_window.h"
 #include "tests/support/line_client.h"
 
@@ -273,6 +274,101 @@ TEST_F(LedWindow, CutsTheForce) {
   ASSERT_TRUE(in_time([&] { return desktop->live.force_armed(); }));
   ask({{"do", "cut"}});
   EXPECT_TRUE(in_time([&] { return !desktop->live.force_armed(); }));
+}
+
+// Each run has its settings; a change reaches one setting of one run.
+TEST_F(LedWindow, GetsAndSetsOneSettingOfOneRun) {
+  desktop->tuning.add_lane();
+  desktop->tuning.add_lane();
+  turns(3);
+  LaneParameters& lanes = desktop->settings.lanes.parameters;
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    lanes[i].eta = 0.6 + 0.125 * static_cast<double>(i);
+    lanes[i].alpha = 0.01 * static_cast<double>(i + 1);
+  }
+  turns(2);
+  const json all = ask({{"do", "get"}});
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    const json& values = all[i == kMainLane ? "values" : lane_name(i)];
+    EXPECT_EQ(values["coupling.eta"], lanes[i].eta) << i;
+    EXPECT_EQ(values["observer.alpha"], lanes[i].alpha) << i;
+    EXPECT_EQ(values["coupling.kind"], name(lanes[i].kind)) << i;
+  }
+  EXPECT_EQ(all["state"]["lanes"], 3);
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    LaneParameters wanted = lanes;
+    wanted[i].alpha = 0.035;
+    const json now =
+        ask({{"do", "set"}, {"lane", i}, {"values", {{"observer.alpha", 0.035}}}})["values"];
+    EXPECT_EQ(now, (json{{"observer.alpha", 0.035}}));
+    EXPECT_EQ(lanes, wanted) << i;
+  }
+  EXPECT_THAT(refused({{"do", "set"}, {"lane", 3}, {"values", json::object()}}), HasSubstr("lane"));
+}
+
+TEST_F(LedWindow, MarksTheMomentInPlotsAndRecording) {
+  const auto notes = [&] {
+    std::vector<std::string> all;
+    for (const PlotMark& mark : desktop->live.stage().history.marks()) {
+      if (mark.key == kNoteMark) all.push_back(mark.label);
+    }
+    return all;
+  };
+  EXPECT_TRUE(ask({{"do", "mark"}, {"text", "before"}}).contains("tick"));
+  EXPECT_EQ(notes(), std::vector<std::string>{"before"});
+  const fs::path file = dir / "marked.h5";
+  ask({{"do", "record"}, {"file", file.string()}});
+  turns(10);
+  ask({{"do", "mark"}, {"text", "first"}});
+  turns(10);
+  const json second = ask({{"do", "mark"}, {"text", "second"}});
+  turns(5);
+  ask({{"do", "stop"}});
+  EXPECT_EQ(notes(), (std::vector<std::string>{"before", "first", "second"}));
+  const Session session = read_session(file);
+  ASSERT_EQ(session.marks.size(), 2u);
+  EXPECT_EQ(session.marks[0].text, "first");
+  EXPECT_EQ(session.marks[1].text, "second");
+  EXPECT_GT(session.marks[1].tick, session.marks[0].tick);
+  EXPECT_LT(session.marks[1].tick, session.size());
+  EXPECT_GT(second["time"], 0);
+}
+
+TEST_F(LedWindow, SaysWhoHasEndedAndWhatComesBack) {
+  const auto said = [&](const char* what) {
+    return std::ranges::any_of(desktop->notices.all(),
+                               [&](const Notice& notice) { return notice.text == what; });
+  };
+  const char* const program =
+      "The program that controlled this window has ended. Your settings are back.";
+  const char* const study = "The study has ended. Your settings are back.";
+  for (const bool hidden : {false, true}) {
+    desktop->notices.clear();
+    const double before = eta();
+    if (hidden) ask({{"do", "blind"}});
+    ask({{"do", "set"}, {"values", {{"coupling.eta", 0.45}}}});
+    EXPECT_TRUE(desktop->lead.on());
+    client->leave();
+    ASSERT_TRUE(in_time([&] { return !desktop->lead.on(); }));
+    EXPECT_EQ(eta(), before);
+    EXPECT_EQ(said(study), hidden);
+    EXPECT_EQ(said(program), !hidden);
+    client.emplace(dir / "s/window.control");
+  }
+  desktop->notices.clear();
+  ask({{"do", "set"}, {"values", {{"coupling.eta", eta()}}}});
+  client->leave();
+  ASSERT_TRUE(in_time([&] { return !desktop->lead.on(); }));
+  EXPECT_TRUE(desktop->notices.all().empty()) << "nothing was changed";
+}
+
+TEST_F(LedWindow, HoldsAnArmThatItOpensToThePersonsLimit) {
+  desktop->settings.parameters().torque_limit = 0.01;
+  turns(2);
+  EXPECT_EQ(ask({{"do", "open"}, {"arm", "paddle.urdf"}})["arm"], "paddle");
+  EXPECT_LE(desktop->settings.parameters().torque_limit, 0.01);
+  EXPECT_THAT(refused({{"do", "set"}, {"values", {{"device.torque_limit", 0.02}}}}),
+              HasSubstr("device.torque_limit"));
 }
 
 }  // namespace
