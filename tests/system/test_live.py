@@ -171,7 +171,7 @@ class Live(unittest.TestCase):
         self.assertIn("until you choose", limpid("devices").out)
         wrong = limpid("devices", "socket:replay", "--arm", ASSETS / "devices/joystick.urdf")
         self.assertEqual(wrong.status, 2)
-        self.assertIn("of 2 joints, and has 3 joints", wrong.err)
+        self.assertIn("of 2 joints. The device has 3 joints now", wrong.err)
         right = limpid("devices", "socket:replay", "--arm", ASSETS / "devices/omni.urdf")
         self.assertEqual(right.status, 0, right.err)
         self.assertIn("is used as the arm omni: this arm was chosen", right.out)

@@ -302,7 +302,7 @@ TEST_F(PluggedDevice, PushesInALiveRunAndIsRecorded) {
   EXPECT_FALSE(fs::exists("live.h5.part"));
   const Said brief = run({"run", "--live", "--yes", "--duration", "0.3", "--measure-grip"});
   EXPECT_EQ(brief.status, 2);
-  EXPECT_THAT(brief.err, HasSubstr("limpid: --measure-grip: needs "));
+  EXPECT_THAT(brief.err, HasSubstr("limpid: --measure-grip: give --duration of at least "));
 }
 
 // The command is stopped by Ctrl-C while it waits for the hand.
