@@ -94,19 +94,14 @@ void refuse_what_has_no_effect(const InputOptions& input) {
 
 // The arm of the options, with the settings that `limpid run` gives it.
 ExperimentArm arm_under(const InputOptions& input) {
-  ExperimentArm on = built_in_arm();
-  const std::string built_in = on.description.urdf;
-  if (!input.device.empty() || !input.tip.empty()) on.description = arm_of(input);
-  const ArmDescription& arm = on.description;
+  const bool given = !input.device.empty() || !input.tip.empty();
+  const ArmDescription arm = given ? arm_of(input) : built_in_arm().description;
   require_readings(input, arm);
+  ExperimentArm on = experiment_arm(arm, input.readings);
+  if (input.settings.empty()) return on;
   on.settings = make_parameters(input, arm);
-  on.readings = input.readings;
-  std::vector<std::string> with = input.settings;
-  if (on.readings) with.insert(with.begin(), "its readings");
-  if (arm.urdf != built_in || !with.empty()) {
-    on.name =
-        fmt::format("{}{}{}", arm.name, with.empty() ? "" : " with ", fmt::join(with, " and "));
-  }
+  on.name = fmt::format("{}{}{}", arm.name, on.readings ? " with its readings and " : " with ",
+                        fmt::join(input.settings, " and "));
   return on;
 }
 

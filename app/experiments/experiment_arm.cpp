@@ -25,8 +25,9 @@ ExperimentArm built_in_arm() {
 
 ExperimentArm experiment_arm(const ArmDescription& arm, bool readings) {
   ExperimentArm on = built_in_arm();
-  if (arm.urdf == on.description.urdf && !readings) return on;
+  const bool built_in = arm.urdf == on.description.urdf;
   on.description = arm;
+  if (built_in && !readings) return on;
   on.name = arm.name + (readings ? " with its readings" : "");
   on.readings = readings;
   on.settings = readings ? fitted_with_readings(arm) : fitted(arm);

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "app/base/session_bus.h"
+#include "tests/support/portal_response.h"
 #include "tests/support/private_bus.h"
 
 namespace limpid {
@@ -23,7 +24,6 @@ using namespace std::chrono_literals;
 using State = FilePortal::State;
 
 constexpr const char* kPortalName = "org.freedesktop.portal.Desktop";
-constexpr const char* kRequestName = "org.freedesktop.portal.Request";
 
 template <class Done>
 bool within(std::chrono::milliseconds time, const Done& done) {
@@ -111,24 +111,7 @@ class Desk {
   }
   // Ends a dialog: `how` 0 with this address of a file.
   void respond(const std::string& handle, dbus_uint32_t how, const std::string& uri = "") {
-    const BusMessage signal(dbus_message_new_signal(handle.c_str(), kRequestName, "Response"));
-    DBusMessageIter at, results, entry, value, uris;
-    dbus_message_iter_init_append(signal.get(), &at);
-    dbus_message_iter_append_basic(&at, DBUS_TYPE_UINT32, &how);
-    dbus_message_iter_open_container(&at, DBUS_TYPE_ARRAY, "{sv}", &results);
-    if (!uri.empty()) {
-      const char *const name = "uris", *const address = uri.c_str();
-      dbus_message_iter_open_container(&results, DBUS_TYPE_DICT_ENTRY, nullptr, &entry);
-      dbus_message_iter_append_basic(&entry, DBUS_TYPE_STRING, &name);
-      dbus_message_iter_open_container(&entry, DBUS_TYPE_VARIANT, "as", &value);
-      dbus_message_iter_open_container(&value, DBUS_TYPE_ARRAY, "s", &uris);
-      dbus_message_iter_append_basic(&uris, DBUS_TYPE_STRING, &address);
-      dbus_message_iter_close_container(&value, &uris);
-      dbus_message_iter_close_container(&entry, &value);
-      dbus_message_iter_close_container(&results, &entry);
-    }
-    dbus_message_iter_close_container(&at, &results);
-    send(signal);
+    send(test::portal_response(handle, how, uri));
   }
   // Answers a question about a property with a number.
   void tell(const Call& call, dbus_uint32_t number) {

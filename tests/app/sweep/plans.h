@@ -56,6 +56,23 @@ inline std::string gathered(const SweepPlan& plan, const std::filesystem::path& 
   return bytes_of(folder.table());
 }
 
+// Blocks of one point: three laws, two grips, three etas.
+inline const std::string kGrips = R"(title = "Grips"
+scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }
+seconds = 0.02
+measure = ["human_rms", "stable"]
+block = 1
+axis = [
+  { key = "coupling.kind", values = ["standard", "proposed", "predictive"] },
+  { key = "hand.stiffness", values = [1000, 100], scale = "log" },
+  { key = "coupling.eta", from = 0.4, to = 1, count = 3 },
+]
+[figure]
+x = "stiffness"
+theory = ["pr"]
+)";
+
 // A fast plan: a few ticks a point.
 inline const std::string kShort = R"(title = "Short"
 scene = "free.toml"

@@ -17,23 +17,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// Blocks of one point: three laws, two grips, three etas.
-const std::string kLinedPlan = R"(title = "Lines"
-scene = "free.toml"
-hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }
-seconds = 0.02
-measure = ["human_rms", "stable"]
-block = 1
-axis = [
-  { key = "coupling.kind", values = ["standard", "proposed", "predictive"] },
-  { key = "hand.stiffness", values = [1000, 100], scale = "log" },
-  { key = "coupling.eta", from = 0.4, to = 1, count = 3 },
-]
-[figure]
-x = "stiffness"
-theory = ["pr"]
-)";
-
 class LinesOfASweep : public WholeWindow {
  protected:
   void open(const std::string& plan, const fs::path& folder, std::uint64_t blocks = 1000) {
@@ -69,7 +52,7 @@ class LinesOfASweep : public WholeWindow {
 
 TEST_F(LinesOfASweep, StandBesideEachOther) {
   const fs::path folder = sweeps_dir() / "mine";
-  open(kLinedPlan, folder, 4);
+  open(test::kGrips, folder, 4);
   expect_line({"rms hand torque", "over", "Grip stiffness", "and", "Impedance scaling \xCE\xB7"});
   expect_line({"Coupling", "standard"});
   expect_line({"4 of 18 points, filling", desktop->sweep.map()->lines.at(0).label});
@@ -91,7 +74,7 @@ TEST_F(LinesOfASweep, StandBesideEachOther) {
 }
 
 TEST_F(LinesOfASweep, SayWhatTheirChoicesAre) {
-  open(kLinedPlan, dir / "swept");
+  open(test::kGrips, dir / "swept");
   const SweepTable& table = desktop->sweep.sweep()->table;
   EXPECT_THAT(hint("rms hand torque", "Sweep"), HasSubstr(table.columns[0].what.substr(0, 25)));
   EXPECT_THAT(hint("Grip stiffness", "Sweep"),
@@ -105,14 +88,14 @@ TEST_F(LinesOfASweep, SayWhatTheirChoicesAre) {
 }
 
 TEST_F(LinesOfASweep, AreLeftByTheirButton) {
-  open(kLinedPlan, dir / "swept");
+  open(test::kGrips, dir / "swept");
   click("Close (Esc)", "Sweep");
   EXPECT_EQ(desktop->dialog.name(), "");
 }
 
 // Axes are exchanged rather than being the same twice.
 TEST_F(LinesOfASweep, KeepTwoAxesApart) {
-  open(kLinedPlan, dir / "swept");
+  open(test::kGrips, dir / "swept");
   const std::string eta = "Impedance scaling \xCE\xB7";
   const auto axes = [&] {
     const MapChoice& choice = desktop->sweep.choice();

@@ -67,11 +67,6 @@ class AGallery : public WholeWindow {
     }
     return std::nullopt;
   }
-  bool said(const std::string& what) const {
-    return std::ranges::any_of(desktop->notices.all(), [&](const Notice& notice) {
-      return notice.text.find(what) != std::string::npos;
-    });
-  }
 };
 
 TEST_F(AGallery, HasOnesOwnScenesFirst) {

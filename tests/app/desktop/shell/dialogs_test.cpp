@@ -22,11 +22,6 @@ class Dialog : public WholeWindow {
     ImGui::GetIO().AddInputCharactersUTF8(text.c_str());
     frames(3);
   }
-  bool said(const std::string& what) const {
-    return std::ranges::any_of(desktop->notices.all(), [&](const Notice& notice) {
-      return notice.text.find(what) != std::string::npos;
-    });
-  }
   void play(const char* session) {
     desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions" / session);
     ASSERT_TRUE(until([&] { return desktop->playback.on(); }));

@@ -19,11 +19,6 @@ class ExperimentsOnAnArm : public WholeWindow {
     click(*list);
     click(arm);
   }
-  bool said(const std::string& what) const {
-    return std::ranges::any_of(desktop->notices.all(), [&](const Notice& notice) {
-      return notice.text.find(what) != std::string::npos;
-    });
-  }
 };
 
 TEST_F(ExperimentsOnAnArm, OfferTheBuiltInOneAlone) {

@@ -13,6 +13,7 @@
 #include "app/style/theme.h"
 #include "tests/app/plot/imgui_frames.h"
 #include "tests/support/drawn_text.h"
+#include "tests/support/portal_response.h"
 #include "tests/support/private_bus.h"
 #include "tests/support/until.h"
 
@@ -53,27 +54,8 @@ class StandInPortal {
   }
   // Ends the dialog: given up, or with a file.
   void end(const fs::path& file) {
-    const BusMessage signal(
-        dbus_message_new_signal(handle_.c_str(), "org.freedesktop.portal.Request", "Response"));
-    DBusMessageIter at, results, entry, value, uris;
-    const dbus_uint32_t how = file.empty() ? 1 : 0;
-    dbus_message_iter_init_append(signal.get(), &at);
-    dbus_message_iter_append_basic(&at, DBUS_TYPE_UINT32, &how);
-    dbus_message_iter_open_container(&at, DBUS_TYPE_ARRAY, "{sv}", &results);
-    if (!file.empty()) {
-      const std::string uri = uri_of(file);
-      const char *const name = "uris", *const address = uri.c_str();
-      dbus_message_iter_open_container(&results, DBUS_TYPE_DICT_ENTRY, nullptr, &entry);
-      dbus_message_iter_append_basic(&entry, DBUS_TYPE_STRING, &name);
-      dbus_message_iter_open_container(&entry, DBUS_TYPE_VARIANT, "as", &value);
-      dbus_message_iter_open_container(&value, DBUS_TYPE_ARRAY, "s", &uris);
-      dbus_message_iter_append_basic(&uris, DBUS_TYPE_STRING, &address);
-      dbus_message_iter_close_container(&value, &uris);
-      dbus_message_iter_close_container(&entry, &value);
-      dbus_message_iter_close_container(&results, &entry);
-    }
-    dbus_message_iter_close_container(&at, &results);
-    send(signal);
+    send(test::portal_response(handle_, file.empty() ? 1 : 0,
+                               file.empty() ? std::string() : uri_of(file)));
   }
 
  private:

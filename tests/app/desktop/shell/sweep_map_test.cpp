@@ -15,23 +15,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-// Blocks of one point: three laws, two grips, three etas.
-const std::string kMapPlan = R"(title = "Grips"
-scene = "free.toml"
-hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }
-seconds = 0.02
-measure = ["human_rms", "stable"]
-block = 1
-axis = [
-  { key = "coupling.kind", values = ["standard", "proposed", "predictive"] },
-  { key = "hand.stiffness", values = [1000, 100], scale = "log" },
-  { key = "coupling.eta", from = 0.4, to = 1, count = 3 },
-]
-[figure]
-x = "stiffness"
-theory = ["pr"]
-)";
-
 class MapOfASweep : public WholeWindow {
  protected:
   fs::path folder() const { return dir / "swept"; }
@@ -72,15 +55,10 @@ class MapOfASweep : public WholeWindow {
   std::string in_table(std::uint64_t point, std::size_t column) const {
     return fmt::format("{:.6g}", desktop->sweep.sweep()->table.at(point, column));
   }
-  bool said(const std::string& what) const {
-    return std::ranges::any_of(desktop->notices.all(), [&](const Notice& notice) {
-      return notice.text.find(what) != std::string::npos;
-    });
-  }
 };
 
 TEST_F(MapOfASweep, NamesMeasureAxesAndHowFarItIs) {
-  open(test::sweep_plan(dir, kMapPlan));
+  open(test::sweep_plan(dir, test::kGrips));
   EXPECT_EQ(desktop->dialog.name(), "sweep");
   const std::string shown = words();
   for (const char* text : {"Sweep: Grips", "rms hand torque", "over", "and", "Coupling", "standard",
@@ -93,7 +71,7 @@ TEST_F(MapOfASweep, NamesMeasureAxesAndHowFarItIs) {
 }
 
 TEST_F(MapOfASweep, NamesEachChoiceBesideIt) {
-  open(test::sweep_plan(dir, kMapPlan));
+  open(test::sweep_plan(dir, test::kGrips));
   for (const auto& [label, chosen] : {std::pair("over", "Grip stiffness"),
                                       {"and", "Impedance scaling \xCE\xB7"},
                                       {"Coupling", "standard"}}) {
@@ -106,7 +84,7 @@ TEST_F(MapOfASweep, NamesEachChoiceBesideIt) {
 
 // Points are numbered with the last axis fastest: kind, stiffness (1000 first), eta.
 TEST_F(MapOfASweep, SaysThePointUnderTheMouse) {
-  open(test::sweep_plan(dir, kMapPlan));
+  open(test::sweep_plan(dir, test::kGrips));
   const auto point_of_cell = [](int x, int y) {
     return static_cast<std::uint64_t>((1 - x) * 3 + y);
   };
@@ -128,7 +106,7 @@ TEST_F(MapOfASweep, SaysThePointUnderTheMouse) {
 
 // A point is marked where its values are on the axes: in the middle of its cell.
 TEST_F(MapOfASweep, MarksItsPointsWhereTheirValuesAre) {
-  open(test::sweep_plan(dir, kMapPlan));
+  open(test::sweep_plan(dir, test::kGrips));
   const auto marked = [](ImVec2 at) {
     return test::inked(at, [](ImU32 ink) { return ink == IM_COL32(0, 0, 0, 255); });
   };
@@ -143,7 +121,7 @@ TEST_F(MapOfASweep, MarksItsPointsWhereTheirValuesAre) {
 }
 
 TEST_F(MapOfASweep, PlaysThePointThatIsClicked) {
-  open(test::sweep_plan(dir, kMapPlan));
+  open(test::sweep_plan(dir, test::kGrips));
   click(cell(1, 2, 1, 3));
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   EXPECT_TRUE(
@@ -159,7 +137,7 @@ TEST_F(MapOfASweep, PlaysThePointThatIsClicked) {
 }
 
 TEST_F(MapOfASweep, TellsWhatThePointIsThatIsPlayed) {
-  open(test::sweep_plan(dir, kMapPlan));
+  open(test::sweep_plan(dir, test::kGrips));
   click(cell(1, 2, 1, 3));
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   const PlayedSession& played = *desktop->playback.shown();
@@ -173,7 +151,7 @@ TEST_F(MapOfASweep, TellsWhatThePointIsThatIsPlayed) {
 }
 
 TEST_F(MapOfASweep, SaysThatAPointDiffersFromItsTable) {
-  const SweepPlan plan = test::sweep_plan(dir, kMapPlan);
+  const SweepPlan plan = test::sweep_plan(dir, test::kGrips);
   const SweepFolder swept(plan, folder());
   SweepBook book(plan, swept, false);
   const std::atomic<bool> stop{false};
@@ -197,7 +175,7 @@ TEST_F(MapOfASweep, SaysThatAPointDiffersFromItsTable) {
 }
 
 TEST_F(MapOfASweep, PlaysAPointThatItsTableLacks) {
-  open(test::sweep_plan(dir, kMapPlan), 4);
+  open(test::sweep_plan(dir, test::kGrips), 4);
   click(cell(0, 2, 2, 3));
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   EXPECT_TRUE(
@@ -223,7 +201,7 @@ axis = [ { key = "coupling.eta", values = [0.5, 1] },
 }
 
 TEST_F(MapOfASweep, ShowsWhatIsChosen) {
-  open(test::sweep_plan(dir, kMapPlan));
+  open(test::sweep_plan(dir, test::kGrips));
   const auto choose = [&](const char* shown, const char* wanted) {
     click(shown, "Sweep");
     click(wanted, "##Combo");
@@ -248,7 +226,7 @@ TEST_F(MapOfASweep, ShowsWhatIsChosen) {
 }
 
 TEST_F(MapOfASweep, FollowsATableThatFills) {
-  const SweepPlan plan = test::sweep_plan(dir, kMapPlan);
+  const SweepPlan plan = test::sweep_plan(dir, test::kGrips);
   open(plan, 4);
   EXPECT_THAT(words(), HasSubstr("4 of 18 points, filling"));
   point_at(cell(0, 2, 2, 3));

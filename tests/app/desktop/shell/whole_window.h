@@ -83,6 +83,11 @@ class WholeWindow : public testing::Test {
   bool until(Done done) {
     return test::until(done, [this] { frames(1); });
   }
+  bool said(const std::string& what) const {
+    return std::ranges::any_of(desktop->notices.all(), [&](const Notice& notice) {
+      return notice.text.find(what) != std::string::npos;
+    });
+  }
   void run(const char* command) {
     EXPECT_EQ(run_command(command, *desktop), "") << command;
     frames(3);
