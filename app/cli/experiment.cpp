@@ -29,8 +29,8 @@ constexpr unsigned kMostThreads = 256;
 struct ExperimentOptions {
   std::string name;
   std::string out;
-  std::uint64_t seed = 0;
-  unsigned threads = 0;
+  std::optional<std::uint64_t> seed;
+  std::optional<unsigned> threads;
   bool force = false;
   LiveOptions live;
   InputOptions input;  // for live experiments
@@ -62,8 +62,8 @@ Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentAr
                      .unit = "",
                      .rate = "% per second"});
   return carry_out(experiment, {.dir = options.out,
-                                .seed = options.seed,
-                                .threads = options.threads,
+                                .seed = options.seed.value_or(0),
+                                .threads = options.threads.value_or(0),
                                 .arm = on,
                                 .stop = &interrupted,
                                 .progress = [&](double part) { progress.at(100 * part); }});
@@ -200,6 +200,10 @@ LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
 int run_on_device(const ExperimentOptions& options) {
   if (options.input.readings) {
     throw UsageError("--readings: not together with --live: a device has its own readings");
+  }
+  for (const auto& [option, given] : {std::pair{"--seed", options.seed.has_value()},
+                                      {"--threads", options.threads.has_value()}}) {
+    if (given) throw UsageError(fmt::format("{}: not together with --live", option));
   }
   const auto wanted = chosen(live_experiments(), options.name, ": not together with --live");
   keep_trials(wanted, options);

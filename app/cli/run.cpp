@@ -96,7 +96,9 @@ int run_live(const LiveRunOptions& options) {
   if (!options.picture.empty()) save_picture(options.picture, plan, summary.memorable());
   fmt::print("{}{}", summary.text(), at_limit_text(std::array{watch.at_limit()}));
   if (options.measure_grip) print_measured(measured(plan, grip));
-  if (!options.record.empty()) fmt::print("recorded in {}\n", options.record);
+  if (!options.record.empty()) {
+    fmt::print("recorded {} ticks in {}\n", summary.totals().rows, options.record);
+  }
   print_warnings(watch.cautions());
   if (whole) return 0;
   fmt::print(stderr, "limpid: stopped at {:.3f} s\n", summary.time());

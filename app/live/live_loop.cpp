@@ -66,8 +66,7 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   const auto stride = static_cast<std::size_t>(rig_->layout().stride());
   const std::size_t all = kMostLanes * stride;
   trace_ = std::make_unique<TraceRing>(trace_rows(all), all);
-  next_tick_ = drained_from_ = seen_dropped_ = gap_ = published_ = 0;
-  before_gap_ = 0;
+  drained_from_ = published_ = 0;
   rows_.assign(all, std::numeric_limits<double>::quiet_NaN());
   std::ranges::fill(row(kMainLane), 0.0);
   home_ = rebase_ = std::move(start);
@@ -133,19 +132,10 @@ void LiveLoop::close() {
 
 LiveLoop::~LiveLoop() { close(); }
 
-// The full ring refuses rows, so all rows that it holds then are older than the gap.
 std::size_t LiveLoop::drain(std::span<double> into) {
-  if (!trace_) return 0;
-  if (const std::uint64_t dropped = trace_->dropped(); before_gap_ == 0) {
-    gap_ = dropped - std::exchange(seen_dropped_, dropped);
-    if (gap_ > 0) before_gap_ = trace_->size();
-  }
-  if (before_gap_ > 0) into = into.first(std::min(into.size(), before_gap_ * trace_->stride()));
-  const std::size_t count = trace_->pop(into);
-  drained_from_ = next_tick_;
-  next_tick_ += count;
-  if (before_gap_ > 0 && (before_gap_ -= count) == 0) next_tick_ += gap_;
-  return count;
+  if (!trace_ || trace_->size() == 0) return 0;
+  drained_from_ = trace_->number();
+  return trace_->pop(into);
 }
 
 void LiveLoop::plug(std::unique_ptr<Device> device) {

@@ -230,10 +230,7 @@ class LiveLoop {
   TripleBuffer<Controls> controls_;
   TripleBuffer<Snapshot> snapshots_;
   std::unique_ptr<TraceRing> trace_;
-  // Counts of ticks, for the window. The ring holds before_gap_ rows from before the last gap, of
-  // gap_ dropped ticks.
-  std::uint64_t next_tick_ = 0, drained_from_ = 0, seen_dropped_ = 0, gap_ = 0;
-  std::size_t before_gap_ = 0;
+  std::uint64_t drained_from_ = 0;
   HandOver<TouchWorlds> worlds_;
   int held_ = 0;  // devices in slots_; must outlive them
   HandOver<DeviceSlot> slots_;

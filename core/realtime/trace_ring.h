@@ -91,12 +91,13 @@ class SpscQueue {
   std::vector<T> places_;
 };
 
-// Rows of `stride` doubles.
+// Rows of `stride` doubles, numbered from 0 in the order in which they were offered: a row that was
+// refused leaves a gap in the numbers.
 class TraceRing {
  public:
   // capacity: in rows, a power of two; stride: at least 1; else std::invalid_argument.
   TraceRing(std::size_t capacity, std::size_t stride)
-      : at_(capacity), stride_(stride), rows_(capacity * stride) {
+      : at_(capacity), stride_(stride), rows_(capacity * stride), numbers_(capacity) {
     if (stride == 0) throw std::invalid_argument("a trace ring's rows need at least one column");
   }
 
@@ -111,19 +112,24 @@ class TraceRing {
   // row: exactly stride() doubles.
   bool push(std::span<const double> row) noexcept {
     assert(row.size() == stride_);
+    const std::uint64_t number = offered_++;
     if (at_.size() == at_.capacity()) {
       dropped_.fetch_add(1, std::memory_order_relaxed);
       return false;
     }
     std::ranges::copy(row, place(at_.back()));
+    numbers_[at_.back()] = number;
     at_.push();
     return true;
   }
 
-  // Consumer: moves the oldest rows, as many whole ones as fit, to the beginning of `into`; returns
-  // how many.
+  // Consumer: the number of the oldest row (if size() > 0).
+  std::uint64_t number() const noexcept { return numbers_[at_.front()]; }
+
+  // Consumer: moves the oldest rows, as many whole ones as fit and as have consecutive numbers, to
+  // the beginning of `into`; returns how many.
   std::size_t pop(std::span<double> into) noexcept {
-    const std::size_t count = std::min(at_.size(), into.size() / stride_);
+    const std::size_t count = consecutive(std::min(at_.size(), into.size() / stride_));
     const std::size_t before_the_seam = std::min(count, at_.capacity() - at_.front());
     const auto rest = std::copy_n(place(at_.front()), before_the_seam * stride_, into.begin());
     std::copy_n(place(0), (count - before_the_seam) * stride_, rest);
@@ -132,11 +138,22 @@ class TraceRing {
   }
 
  private:
+  // Number of rows before a gap, of the `most` oldest.
+  std::size_t consecutive(std::size_t most) const noexcept {
+    std::size_t count = std::min<std::size_t>(most, 1);
+    while (count < most &&
+           numbers_[(at_.front() + count) & (at_.capacity() - 1)] == number() + count) {
+      ++count;
+    }
+    return count;
+  }
   double* place(std::size_t index) noexcept { return rows_.data() + index * stride_; }
 
   RingPositions at_;
   std::size_t stride_;
   std::vector<double> rows_;
+  std::vector<std::uint64_t> numbers_;
+  std::uint64_t offered_ = 0;  // the producer's
   std::atomic<std::uint64_t> dropped_{0};
 };
 

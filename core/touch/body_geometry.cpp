@@ -47,6 +47,8 @@ struct BodyGeometry::Inside {
     FacePoints next{};            // its points in the middle of the tick, if they are known
     double goes = 0;              // way of a point until then, at most [m]
     double lost = 0;              // of its points that have just gone, as BodyContact has it [J]
+
+    void clear() { manifold->clearManifold(), points = 0; }
   };
 
   explicit Inside(const Scene& scene);
@@ -83,7 +85,7 @@ struct BodyGeometry::Inside {
   void meet_on(const Way& way, Pair& pair, Solid& moving, Meeting& first);
   static bool hides(const Pair& by, const Pair& pair, bool if_tied);
   static void hide_seams(std::span<Pair> of_ball);
-  void take(Pair& pair);
+  void take(Pair& pair, bool anew);
   static void share_lost(Pair& pair, std::span<BodyContact* const> contacts);
   BodyContact* fresh(const Pair& pair);
   bool allowed(const Pair& pair) const;
@@ -615,12 +617,14 @@ void BodyGeometry::Inside::hide_seams(std::span<Pair> of_ball) {
       c->round_b = nullptr;
       state = c;
     }
-    p.manifold->clearManifold();
-    p.points = 0;
+    p.clear();
   }
 }
 
-void BodyGeometry::Inside::take(Pair& p) {
+// Takes in the points of a pair. `anew`: they are found in this tick.
+void BodyGeometry::Inside::take(Pair& p, bool anew) {
+  if (p.points == 0) p.lost = 0;
+  const std::size_t before = points.size();
   for (int i = 0; i < p.points; ++i) {
     btManifoldPoint& point = p.manifold->getContactPoint(i);
     auto* c = static_cast<BodyContact*>(point.m_userPersistentData);
@@ -639,6 +643,7 @@ void BodyGeometry::Inside::take(Pair& p) {
     c->seen = true;
     points.push_back(c);  // its capacity covers the whole pool
   }
+  if (anew && p.points > 0) share_lost(p, std::span(points).subspan(before));
 }
 
 BodyGeometry::BodyGeometry(const Scene& scene) : in_(std::make_unique<Inside>(scene)) {}
@@ -664,30 +669,28 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake, std::span<const P
     return s.body != BodyContact::kStill && awake[static_cast<std::size_t>(s.body)] != 0;
   };
   const auto anew = [&](const Inside::Pair& p) { return moves(*p.a) || moves(*p.b); };
-  for (auto from = in.pairs.begin(); from != in.pairs.end();) {
-    const auto to =
-        std::find_if(from, in.pairs.end(), [&](const Inside::Pair& p) { return p.a != from->a; });
-    const std::span<Inside::Pair> of_one(from, to);
-    for (Inside::Pair& p : of_one) {
-      if (!anew(p)) continue;
-      if (p.a->overlaps(*p.b)) {
-        in.meet(p);
-      } else if (p.points > 0) {
-        p.manifold->clearManifold();
-        p.points = 0;
-      }
+  const auto find = [&](Inside::Pair& p) {
+    if (p.a->overlaps(*p.b)) {
+      in.meet(p);
+    } else if (p.points > 0) {
+      p.clear();
     }
-    if (from->a->ball()) Inside::hide_seams(of_one);
-    for (Inside::Pair& p : of_one) {
-      if (p.points == 0) {
-        p.lost = 0;
-        continue;
-      }
-      const std::size_t before = in.points.size();
-      in.take(p);
-      if (anew(p)) in.share_lost(p, std::span(in.points).subspan(before));
+  };
+  for (auto p = in.pairs.begin(); p != in.pairs.end();) {
+    const bool found = anew(*p);
+    if (!found && p->points == 0) {
+      p++->lost = 0;
+      continue;
     }
-    from = to;
+    if (found) find(*p);
+    auto to = p + 1;
+    if (p->single && p->a->ball()) {
+      for (; to != in.pairs.end() && to->a == p->a; ++to) {
+        if (anew(*to)) find(*to);
+      }
+      Inside::hide_seams({p, to});
+    }
+    for (; p != to; ++p) in.take(*p, anew(*p));
   }
   for (BodyContact* c : in.last) {
     if (!c->seen) in.free_ones.push_back(c);
@@ -748,10 +751,7 @@ bool BodyGeometry::near(int a, int b) const {
 }
 
 void BodyGeometry::forget() {
-  for (Inside::Pair& p : in_->pairs) {
-    p.manifold->clearManifold();
-    p.points = 0;
-  }
+  for (Inside::Pair& p : in_->pairs) p.clear();
   in_->points.clear();
   in_->left_out = 0;
   in_->free_ones.clear();

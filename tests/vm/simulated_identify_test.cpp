@@ -89,8 +89,9 @@ double leaning(int axis, double t) {
   return axis == 0 ? 0.3 * std::clamp((t - 1.5) / 3, 0.0, 1.0) : 0;
 }
 
-Parameters suited(const ArmDescription& arm, double resolution) {
-  Parameters p = fitted(arm);
+// Gains for readings that are `delay` [s] old, whatever the arm's file knows of it.
+Parameters suited(const ArmDescription& arm, double resolution, double delay) {
+  Parameters p = fitted(arm, {}, delay);
   p.kind = CouplingKind::proposed;
   p.eta = kEta;
   p.encoder_step = resolution;
@@ -133,13 +134,14 @@ class FreeMotion {
   Eigen::Vector<double, 7> b_ = Eigen::Vector<double, 7>::Zero();
 };
 
-Felt felt_on(const UnlikeStick& stick, const ArmDescription& believed) {
+// delay: what the gains reckon with [s].
+Felt felt_on(const UnlikeStick& stick, const ArmDescription& believed, double delay) {
   Felt out;
   for (const bool pressing : {false, true}) {
     Scene scene;
     if (pressing) scene.add({.name = "stop", .shape = JointStop{0, 0.1, 1}, .material = {2}});
     SimulatedDesk<RawDeviceModel> desk(believed, scene, stick.made(),
-                                       suited(believed, stick.layout.resolution));
+                                       suited(believed, stick.layout.resolution, delay));
     const Hand hand(desk.model->hand(), stick, pressing ? leaning : swinging);
     desk.armed = true;
     const Parameters& p = desk.parameters;
@@ -177,7 +179,9 @@ TEST_P(SimulatedIdentify, BringsTheCouplingNearerToItsPromise) {
   SimulatedIdentification run(stick);
   run.run();
   const Identified found = identify(run.arm, run.record(), {.gravity = kDown});
-  const Felt before = felt_on(stick, run.arm), after = felt_on(stick, found.arm);
+  ASSERT_TRUE(found.arm.delay);
+  const Felt before = felt_on(stick, run.arm, *found.arm.delay);
+  const Felt after = felt_on(stick, found.arm, *found.arm.delay);
   std::printf(
       "| %2d bits, lag %lld ms | inertia felt %.2f -> %.2f | hand off %.0f -> %.0f %% | slope %.2f "
       "-> "

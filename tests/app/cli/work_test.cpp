@@ -174,7 +174,10 @@ TEST_F(Work, OfAnExperimentSaysWhichArmItDoesNotTake) {
         {{"inertia", "--readings"}, "--readings: the file of the arm omni has neither"},
         {{"inertia", "--device", "none.urdf"}, "none.urdf"},
         {{"inertia", "--device", "touch.urdf", "--set", "coupling.eta=2"}, "--set: only together"},
-        {{"inertia", "--live", "--yes", "--readings"}, "--readings: not together with --live"}}) {
+        {{"inertia", "--live", "--yes", "--readings"}, "--readings: not together with --live"},
+        {{"inertia", "--live", "--yes", "--seed", "3"}, "--seed: not together with --live"},
+        {{"inertia", "--live", "--yes", "--threads", "1"},
+         "--threads: not together with --live"}}) {
     std::vector<std::string> all{"experiment"};
     all.insert(all.end(), words.begin(), words.end());
     all.insert(all.end(), {"--out", "o"});

@@ -52,6 +52,28 @@ TEST(TraceRing, DropsAndCountsWhatFindsNoRoomAndKeepsTheOlderRows) {
   EXPECT_EQ(ring.dropped(), 3u);
 }
 
+TEST(TraceRing, NumbersRowsAsTheyWereOfferedAndPopsUpToAGap) {
+  TraceRing ring(4, 1);
+  std::array<double, 8> out{};
+  const auto offer = [&](int first, int last) {
+    for (int n = first; n <= last; ++n) ring.push(std::array{static_cast<double>(n)});
+  };
+  const auto popped = [&](std::size_t room) {
+    const double number = static_cast<double>(ring.number());
+    const std::size_t count = ring.pop(std::span(out).first(room));
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(out[i], number + static_cast<double>(i));
+    return count;
+  };
+  offer(0, 5);  // 4 and 5 find no room
+  EXPECT_EQ(popped(1), 1u);
+  offer(6, 7);  // nor does 7
+  EXPECT_EQ(popped(8), 3u) << "1 to 3";
+  offer(8, 9);
+  EXPECT_EQ(popped(8), 1u) << "6";
+  EXPECT_EQ(popped(8), 2u) << "8 and 9";
+  EXPECT_EQ(ring.size(), 0u);
+}
+
 TEST(TraceRing, PopsWholeRowsOnly) {
   TraceRing ring(4, 3);
   ring.push(std::array{1.0, 2.0, 3.0});
@@ -87,13 +109,17 @@ TEST(TraceRing, DeliversEveryAcceptedRowOnceAndInOrderUnderTwoThreads) {
 
   std::vector<double> received;
   std::int64_t torn = 0;
+  std::int64_t misnumbered = 0;
   std::vector<double> rows(10 * kStride);
   for (bool last = false; !last;) {
     last = done.load(std::memory_order_acquire);
-    while (const std::size_t count = ring.pop(rows)) {
+    while (ring.size() > 0) {
+      const std::uint64_t number = ring.number();
+      const std::size_t count = ring.pop(rows);
       for (std::size_t r = 0; r < count; ++r) {
         const auto row = std::span(rows).subspan(r * kStride, kStride);
         received.push_back(row[0]);
+        misnumbered += row[0] != static_cast<double>(number + r);
         for (const double value : row) torn += value != row[0];
       }
     }
@@ -102,6 +128,7 @@ TEST(TraceRing, DeliversEveryAcceptedRowOnceAndInOrderUnderTwoThreads) {
   producer.join();
 
   EXPECT_EQ(torn, 0);
+  EXPECT_EQ(misnumbered, 0);
   EXPECT_TRUE(received == accepted);
   EXPECT_EQ(ring.dropped(), refused);
   EXPECT_EQ(received.size() + ring.dropped(), static_cast<std::uint64_t>(kRows));
