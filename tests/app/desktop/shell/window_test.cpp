@@ -1,4 +1,5 @@
-// The system's window. Skipped where there is no display.
+// The system's window, on the display that there is, else on an Xvfb of its own. Skipped where
+// there is neither.
 #include "app/desktop/shell/window.h"
 
 #include <GLFW/glfw3.h>
@@ -16,6 +17,7 @@
 #include "app/base/window_system.h"
 #include "app/style/theme.h"
 #include "render/gl/offscreen.h"
+#include "tests/support/spoken_program.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/until.h"
 
@@ -47,6 +49,17 @@ bool has_display() {
 
 class AWindow : public testing::Test {
  protected:
+  static void SetUpTestSuite() {
+    if (has_display()) return;
+    display.emplace(std::vector<std::string>{"Xvfb", "-displayfd", "1", "-screen", "0",
+                                             "1280x900x24", "-nolisten", "tcp"});
+    if (display->ready()) setenv("DISPLAY", (":" + display->line()).c_str(), 1);
+  }
+  static void TearDownTestSuite() {
+    if (!display) return;
+    unsetenv("DISPLAY");
+    display.reset();
+  }
   void SetUp() override {
     if (!has_display()) GTEST_SKIP() << "no display here";
     try {
@@ -75,6 +88,7 @@ class AWindow : public testing::Test {
     return test::until([&] { return !window->due(); }, [&] { frame(); });
   }
 
+  inline static std::optional<test::SpokenProgram> display;
   const test::TempDir dir;
   std::optional<Window> window;
   GLFWwindow* glfw = nullptr;
