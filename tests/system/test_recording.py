@@ -15,7 +15,6 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from limpid_check.checks import verify
 from limpid_check.session import DATASETS, read_session
 from support import ASSETS, LIMPID, Started, SystemTest, WithAnArm, limpid
 
@@ -280,23 +279,6 @@ class Places(WithAnArm):
             self.assertEqual((time.compression, time.shuffle), ("gzip", True))
         self.assertLess(out.stat().st_size, 0.5 * quick.stat().st_size)
         self.assertEqual([p.name for p in self.directory.glob(".limpid-*")], [])
-
-
-class ShippedSessions(SystemTest):
-    """The shipped recordings; of a rounded one the re-run is verified."""
-
-    def test_they_verify_and_can_be_run_again(self) -> None:
-        sessions = sorted((ASSETS / "sessions").glob("*.h5"))
-        self.assertGreaterEqual(len(sessions), 2)
-        for path in sessions:
-            with self.subTest(path.name):
-                again = self.out()
-                done = limpid("run", "--hand", path, "--record", again, "--force")
-                self.assertEqual(done.status, 0, done.err)
-                with h5py.File(path) as file:
-                    rounded = "rounded" in file.attrs
-                checks = verify(read_session(again if rounded else path))
-                self.assertEqual([c for c in checks if not c.passed], [])
 
 
 if __name__ == "__main__":
