@@ -220,7 +220,8 @@ double Keys::number_or(const char* key, double usual, double least, double most)
     const double x = found->get<double>();
     if (x >= least && x <= most) return x;
   }
-  throw error(key, fmt::format("{} is not allowed; allowed: {:.6g} to {:.6g}", shown(*found), least, most));
+  throw error(
+      key, fmt::format("{} is not allowed; allowed: {:.6g} to {:.6g}", shown(*found), least, most));
 }
 
 bool Keys::flag_or(const char* key, bool usual) const {
