@@ -84,8 +84,10 @@ void RunWatch::add(std::span<const double> row) {
   if (diverged_.wild()) return;  // instability has its own warning
   const double energy =
       layout_.in(row, Column::energy_total)[0] - layout_.in(row, Column::energy_compensation)[0];
+  const double from_contacts = layout_.in(row, Column::contact_gain)[0];
   if (!begun_at_) {
     begun_at_ = before_ = energy;
+    contacts_begun_at_ = from_contacts;
     shares_.begin(spring_energy(layout_, row));
   }
   if (by_port_) {
@@ -98,6 +100,7 @@ void RunWatch::add(std::span<const double> row) {
   shares_.take(time, counted, withheld_.add(layout_, row), limited);
   energy_.take(time, at_fault_ ? shares_.without_limits() : shares_.own(), promised_ + kGivenEnergy,
                settings_);
+  contacts_.take(time, from_contacts - contacts_begun_at_, kFromContacts, settings_);
   if (tip_speed_bound(row) <= kFastestTip) return;
   const auto tips = tips_.of(DerivedColumns::from(layout_, row));
   speed_.take(time, tips[kTipVelocity].norm(), kFastestTip, settings_);
@@ -145,6 +148,12 @@ std::vector<std::string> RunWatch::cautions() const {
         fmt::format("the hand was given {}, above the limit since t = {:.3f} s: this run is not "
                     "passive ({})",
                     joules_text(given_.most), given_.since, given_.with));
+  }
+  if (contacts_.since >= 0) {
+    all.push_back(fmt::format(
+        "contacts gave {} by themselves, above the limit since t = {:.3f} s, as corners "
+        "of surfaces whose stiffness differs do ({})",
+        joules_text(contacts_.most), contacts_.since, contacts_.with));
   }
   if (speed_.since >= 0) {
     all.push_back(

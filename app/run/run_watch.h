@@ -1,5 +1,5 @@
-// Faults of a run that must not pass without a word: energy that the coupling gave, speeds of no
-// hand, rows that no arm could follow.
+// Faults of a run that must not pass without a word: energy that the coupling or contacts gave,
+// speeds of no hand, rows that no arm could follow.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,8 @@ class RunWatch {
  public:
   // Fastest tip that a hand leads [m/s]: a thrown ball leaves most hands at 10 to 25.
   static constexpr double kFastestTip = 10;
+  // Most that contacts may give by themselves [J].
+  static constexpr double kFromContacts = 5e-3;
 
   // `p` are the parameters at the first row.
   RunWatch(const ArmDescription& arm, const RowLayout& layout, const Parameters& p);
@@ -63,6 +65,7 @@ class RunWatch {
   EnergyShares shares_;
   WithheldEnergy withheld_;
   std::optional<double> begun_at_;  // E_c at the first row [J]
+  double contacts_begun_at_ = 0;    // what contacts had given until then [J]
   std::deque<Change> changes_;
   std::uint64_t rows_ = 0;
   std::vector<MotorLimit> limits_;  // of the motors
@@ -73,7 +76,7 @@ class RunWatch {
   bool by_port_ = false;            // the law promises what the hand is given, not E_c
   double before_ = 0, aside_ = 0;   // last E_c, and what it grew by under such laws [J]
   std::string settings_;            // in words
-  Excess energy_, given_, speed_;
+  Excess energy_, given_, contacts_, speed_;
 };
 
 // Returns a line for each lane whose motors were at their limit for so long [s].

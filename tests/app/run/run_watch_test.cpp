@@ -36,6 +36,7 @@ class Watched {
       layout.in(std::span(row), Column::time)[0] = 0.001 * static_cast<double>(rows);
       layout.in(std::span(row), Column::energy_total)[0] = energy_;
       layout.in(std::span(row), Column::energy_port)[0] = given;
+      layout.in(std::span(row), Column::contact_gain)[0] = from_contacts;
       layout.in(std::span(row), Column::motor_torque)[0] = torque;
       layout.in(std::span(row), Column::commanded_torque)[0] = torque;
       layout.in(std::span(row), Column::device_velocity)[0] = speed;
@@ -47,8 +48,9 @@ class Watched {
   RowLayout layout{3};
   RunWatch watch;
   std::uint64_t rows = 0;
-  double speed = 0;  // speed of the first joint [rad/s]
-  double given = 0;  // to the hand [J]
+  double speed = 0;          // speed of the first joint [rad/s]
+  double given = 0;          // to the hand [J]
+  double from_contacts = 0;  // [J]
 
  private:
   double energy_ = 0;  // [J]
@@ -94,6 +96,54 @@ TEST(RunWatch, JudgesALawOfThePortByWhatTheHandIsGiven) {
   changed.go_to(0.05, 1000);
   EXPECT_THAT(changed.watch.warnings(), testing::Contains(HasSubstr("E_c rose to 45 mJ")));
   EXPECT_THAT(changed.watch.warnings(), testing::Contains(HasSubstr("(standard)")));
+}
+
+TEST(RunWatch, SaysWhatContactsGaveByThemselves) {
+  Watched run;
+  run.from_contacts = 4.9e-3;
+  run.go_to(0, 10);
+  EXPECT_THAT(run.watch.warnings(), IsEmpty());
+  run.from_contacts = 19e-3;
+  run.go_to(0, 10);
+  run.from_contacts = 2e-3;
+  run.go_to(0, 10);
+  EXPECT_THAT(
+      run.watch.warnings(),
+      ElementsAre("contacts gave 19 mJ by themselves, above the limit since t = 0.011 s, as "
+                  "corners of surfaces whose stiffness differs do (proposed, eta 1)"));
+}
+
+// A floor and a ramp of very different stiffness, and a tip that circles deep below their edge.
+TEST(RunWatch, HearsACornerOfSurfacesWhoseStiffnessDiffers) {
+  RunPlan plan = test::plan("free.toml", "free.csv", 2);
+  Scene scene;
+  scene.tip_radius = 0.003;
+  const Vec3 edge(0.19, 0, -0.03);
+  scene.add({.pose = pose_at(edge), .shape = Plane{}, .material = {.stiffness = 1420}});
+  Object ramp{.shape = Box{Vec3(0.1, 0.1, 0.1)}, .material = {.stiffness = 203}};
+  ramp.pose.linear() = Eigen::AngleAxisd(-1.19, Vec3::UnitX()).matrix();
+  ramp.pose.translation() = edge + ramp.pose.linear() * Vec3(0, -0.05, -0.05);
+  scene.add(ramp);
+  for (const double softer : {203.0, 1420.0}) {
+    scene.objects[1].material.stiffness = softer;
+    plan.document.scene = scene;
+    plan.hand = {};
+    for (int k = 0; k < 4000; ++k) {
+      const double t = 1e-3 * k, angle = 2 * M_PI * 1.5 * std::max(0.0, t - 0.5);
+      plan.hand.time.push_back(t);
+      plan.hand.position.push_back(edge + 0.01 * Vec3(0, std::sin(angle), 0.3 - std::cos(angle)) +
+                                   Vec3(0, 0, 0.02 * std::max(0.0, 1 - 2 * t)));
+    }
+    plan.rows = 4000;
+    RunWatch watch(plan.arm, plan.layout(), plan.parameters);
+    simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
+      watch.add(row);
+      return true;
+    });
+    EXPECT_EQ(watch.cautions().size(), softer == 1420 ? 0u : 1u);
+    if (softer == 1420) continue;
+    EXPECT_THAT(watch.cautions(), testing::Contains(HasSubstr("contacts gave ")));
+  }
 }
 
 TEST(RunWatch, CountsFromTheFirstRowOfARecording) {
