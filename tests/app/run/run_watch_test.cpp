@@ -115,34 +115,37 @@ TEST(RunWatch, SaysWhatContactsGaveByThemselves) {
 
 // A floor and a ramp of very different stiffness, and a tip that circles deep below their edge.
 TEST(RunWatch, HearsACornerOfSurfacesWhoseStiffnessDiffers) {
-  RunPlan plan = test::plan("free.toml", "free.csv", 2);
-  Scene scene;
-  scene.tip_radius = 0.003;
+  RunPlan plan = test::plan("free.toml", "free.csv", 4);
   const Vec3 edge(0.19, 0, -0.03);
-  scene.add({.pose = pose_at(edge), .shape = Plane{}, .material = {.stiffness = 1420}});
-  Object ramp{.shape = Box{Vec3(0.1, 0.1, 0.1)}, .material = {.stiffness = 203}};
-  ramp.pose.linear() = Eigen::AngleAxisd(-1.19, Vec3::UnitX()).matrix();
-  ramp.pose.translation() = edge + ramp.pose.linear() * Vec3(0, -0.05, -0.05);
-  scene.add(ramp);
-  for (const double softer : {203.0, 1420.0}) {
-    scene.objects[1].material.stiffness = softer;
-    plan.document.scene = scene;
-    plan.hand = {};
-    for (int k = 0; k < 4000; ++k) {
-      const double t = 1e-3 * k, angle = 2 * M_PI * 1.5 * std::max(0.0, t - 0.5);
-      plan.hand.time.push_back(t);
-      plan.hand.position.push_back(edge + 0.01 * Vec3(0, std::sin(angle), 0.3 - std::cos(angle)) +
-                                   Vec3(0, 0, 0.02 * std::max(0.0, 1 - 2 * t)));
-    }
-    plan.rows = 4000;
+  std::vector<double> times;
+  std::vector<Vec3> places;
+  for (int k = 0; k <= 4000; ++k) {
+    const double t = 1e-3 * k, angle = 2 * M_PI * 1.5 * std::max(0.0, t - 0.5);
+    times.push_back(t);
+    places.push_back(edge + 0.01 * Vec3(0, std::sin(angle), 0.3 - std::cos(angle)) +
+                     Vec3(0, 0, 0.02 * std::max(0.0, 1 - 2 * t)));
+  }
+  plan.hand = hand_through(times, places, "circles");
+  for (const double ramps : {203.0, 1420.0}) {
+    Scene& scene = plan.document.scene;
+    scene = {};
+    scene.tip_radius = 0.003;
+    scene.add({.pose = pose_at(edge), .shape = Plane{}, .material = {.stiffness = 1420}});
+    Object ramp{.shape = Box{Vec3(0.1, 0.1, 0.1)}, .material = {.stiffness = ramps}};
+    ramp.pose.linear() = Eigen::AngleAxisd(-1.19, Vec3::UnitX()).matrix();
+    ramp.pose.translation() = edge + ramp.pose.linear() * Vec3(0, -0.05, -0.05);
+    scene.add(ramp);
     RunWatch watch(plan.arm, plan.layout(), plan.parameters);
     simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
       watch.add(row);
       return true;
     });
-    EXPECT_EQ(watch.cautions().size(), softer == 1420 ? 0u : 1u);
-    if (softer == 1420) continue;
-    EXPECT_THAT(watch.cautions(), testing::Contains(HasSubstr("contacts gave ")));
+    const auto said = testing::Contains(HasSubstr("contacts gave "));
+    if (ramps == 1420) {
+      EXPECT_THAT(watch.cautions(), testing::Not(said));
+    } else {
+      EXPECT_THAT(watch.cautions(), said);
+    }
   }
 }
 
