@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <unsupported/Eigen/LevenbergMarquardt>
+
+#include "core/math/eigen.h"
 
 namespace limpid {
 
@@ -71,25 +71,6 @@ using Eigen::VectorXd;
 constexpr Index kLeastRows = 100;
 constexpr double kHuber = 2;  // deviations from which on a miss counts less
 
-// Least squares solutions of A z = b for many b.
-class Projection {
- public:
-  explicit Projection(const MatrixXd& A) : scale_(A.colwise().norm().transpose()) {
-    for (double& s : scale_) s = s > 0 ? 1 / s : 0;
-    qr_.setThreshold(1e-9);
-    qr_.compute(A * scale_.asDiagonal());
-  }
-  VectorXd solve(const VectorXd& b) const { return scale_.asDiagonal() * VectorXd(qr_.solve(b)); }
-  double miss(const VectorXd& b) const {  // |b - A z|^2
-    const VectorXd turned = qr_.householderQ().adjoint() * b;
-    return turned.tail(turned.size() - qr_.rank()).squaredNorm();
-  }
-
- private:
-  VectorXd scale_;
-  Eigen::ColPivHouseholderQR<MatrixXd> qr_;
-};
-
 // The minimum of a function with one minimum there: a grid, then golden sections about the best.
 template <class F>
 double least_of(const F& f, double low, double high) {
@@ -112,15 +93,11 @@ double least_of(const F& f, double low, double high) {
   return 0.5 * (low + high);
 }
 
-// Bodies near the guess and friction that fit R z = y with unit deviations, in the form that
-// Eigen's Levenberg-Marquardt asks for.
-struct Nearest : Eigen::DenseFunctor<double> {
+// Bodies near the guess and friction that fit A z = b with unit deviations.
+struct Nearest {
   Nearest(const ArmDescription& guess, const MatrixXd& A, const VectorXd& b, const VectorXd& torque)
-      : DenseFunctor<double>(static_cast<int>(A.cols()), static_cast<int>(2 * A.cols())) {
+      : of(condensed(A, b)) {
     for (const Link& link : guess.links) bodies.emplace_back(parameters_of(link));
-    const Eigen::HouseholderQR<MatrixXd> qr(A);
-    R = qr.matrixQR().topRows(A.cols()).triangularView<Eigen::Upper>();
-    y = (qr.householderQ().adjoint() * b).head(A.cols());
     // The prior knows a body to a factor of e, and nothing of friction. It favours weight over a
     // spring where both explain as much.
     prior = VectorXd::Ones(A.cols());
@@ -150,18 +127,26 @@ struct Nearest : Eigen::DenseFunctor<double> {
     }
     return out;
   }
-  int operator()(const VectorXd& q, VectorXd& miss) const {
-    miss << R * z(q) - y, prior.cwiseProduct(q);
-    return 0;
+  VectorXd miss(const VectorXd& q) const {
+    VectorXd out(2 * q.size());
+    out << of.R * z(q) - of.y, prior.cwiseProduct(q);
+    return out;
   }
-  int df(const VectorXd& q, MatrixXd& J) const {
-    J << R * slope(q), MatrixXd(prior.asDiagonal());
-    return 0;
+  MatrixXd miss_slope(const VectorXd& q) const {
+    MatrixXd out(2 * q.size(), q.size());
+    out << of.R * slope(q), MatrixXd(prior.asDiagonal());
+    return out;
+  }
+  // Returns the most likely q.
+  VectorXd found() const {
+    return least_miss([this](const VectorXd& q) { return miss(q); },
+                      [this](const VectorXd& q) { return miss_slope(q); },
+                      VectorXd::Zero(prior.size()));
   }
 
   std::vector<PlausibleLink> bodies;
-  MatrixXd R;
-  VectorXd y, prior;
+  Condensed of;
+  VectorXd prior;
 };
 
 class Fit {
@@ -198,13 +183,13 @@ class Fit {
   VectorXd torque(double delay) const {
     return rows_.of(torque_at(record_, smoothing_, times_, delay));
   }
-  double miss(const Projection& fit, double delay) const {
+  double miss(const LeastSquares& fit, double delay) const {
     return fit.miss(weight_.cwiseProduct(torque(delay)));
   }
 
   // Weighs rows by the noise of their joint, found from the misses.
   void weigh() {
-    const Projection fit(weight_.asDiagonal() * rows_.A);
+    const LeastSquares fit(weight_.asDiagonal() * rows_.A);
     delay_ = least_of([&](double d) { return miss(fit, d); }, 0.0, settings_.longest_delay);
     b_ = torque(delay_);
     const VectorXd off = b_ - rows_.A * fit.solve(weight_.cwiseProduct(b_));
@@ -223,14 +208,10 @@ class Fit {
     VectorXd torque = VectorXd::Zero(n_);  // root mean square
     for (Index i = 0; i < b_.size(); ++i) torque[joint(i)] += b_[i] * b_[i];
     torque = (torque.array() / count_.cast<double>().array()).sqrt().max(1e-9);
-    Nearest nearest(guess_, weight_.asDiagonal() * rows_.A, weight_.cwiseProduct(b_), torque);
-    VectorXd q = VectorXd::Zero(rows_.A.cols());
-    Eigen::LevenbergMarquardt<Nearest> search(nearest);
-    search.minimize(q);
-    MatrixXd J(nearest.values(), nearest.inputs());
-    nearest.df(q, J);
-    const MatrixXd spread =
-        MatrixXd(J.transpose() * J).completeOrthogonalDecomposition().pseudoInverse();
+    const Nearest nearest(guess_, weight_.asDiagonal() * rows_.A, weight_.cwiseProduct(b_), torque);
+    const VectorXd q = nearest.found();
+    const MatrixXd J = nearest.miss_slope(q);
+    const MatrixXd spread = inverse_of_symmetric(J.transpose() * J);
     const MatrixXd slope = nearest.slope(q);
     const MatrixXd covariance = slope * spread * slope.transpose();
     const VectorXd z = nearest.z(q);
@@ -299,7 +280,7 @@ class Fit {
   // Standard deviation of the delay, from the curvature of the misses about their minimum [s].
   double delay_deviation() const {
     constexpr double kStep = 2e-4;  // [s]
-    const Projection fit(weight_.asDiagonal() * rows_.A);
+    const LeastSquares fit(weight_.asDiagonal() * rows_.A);
     const double curve =
         (miss(fit, delay_ + kStep) + miss(fit, delay_ - kStep) - 2 * miss(fit, delay_)) /
         (kStep * kStep);

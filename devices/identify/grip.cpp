@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/math/eigen.h"
 #include "core/tick/compensation.h"
 #include "core/tick/tick.h"
 #include "devices/identify/grip_probe.h"
@@ -146,7 +146,7 @@ class HeldDevice {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       levers.col(axis) = steady(pose, Vec3::Zero()) - steady(pose, Vec3::Unit(axis));
     }
-    const Vec3 push = levers.completeOrthogonalDecomposition().solve(left);
+    const Vec3 push = least_squares(levers, left);
     K_.resize(n_, n_);
     for (Eigen::Index j = 0; j < n_; ++j) {
       Eigen::VectorXd up = pose, down = pose;
@@ -310,10 +310,18 @@ class GripFit {
   };
 
   Eigen::VectorXcd left(const Eigen::MatrixXcd& of) const {
-    return of.col(kTerms) - of.leftCols(kTerms) * theta_.cast<Complex>();
+    Eigen::VectorXcd out = of.col(kTerms);
+    for (Eigen::Index i = 0; i < kTerms; ++i) out -= theta_[i] * of.col(i);
+    return out;
   }
   static Gram gram(const Eigen::MatrixXcd& of, const Eigen::VectorXd& weight) {
-    return (of.adjoint() * weight.cast<Complex>().asDiagonal() * of).real();
+    Gram out;
+    for (Eigen::Index i = 0; i <= kTerms; ++i) {
+      for (Eigen::Index j = 0; j <= kTerms; ++j) {
+        out(i, j) = weight.dot(of.col(i).conjugate().cwiseProduct(of.col(j)).real());
+      }
+    }
+    return out;
   }
 
   void solve() {

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "core/math/eigen.h"
 #include "devices/identify/fit.h"
 
 namespace limpid {
@@ -41,16 +41,10 @@ Weighed weighed(const Identified& found, const MotionRecord& record, const FitSe
 
 // The scale s, where A z = b and the last element of z is 1 / s.
 Found scale_in(const MatrixXd& A, const VectorXd& b) {
-  VectorXd inverse = A.colwise().norm().transpose();
-  for (double& s : inverse) s = s > 0 ? 1 / s : 0;
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
-  solver.setThreshold(1e-9);
-  solver.compute(A * inverse.asDiagonal());
-  const VectorXd z = inverse.asDiagonal() * VectorXd(solver.solve(b));
-  const MatrixXd pseudo = solver.pseudoInverse();
-  const double value = 1 / z[z.size() - 1];
-  const double deviation =
-      inverse[inverse.size() - 1] * pseudo.row(pseudo.rows() - 1).norm() * value * value;
+  const LeastSquares fit(A);
+  const Index last = A.cols() - 1;
+  const double value = 1 / fit.solve(b)[last];
+  const double deviation = fit.solution().row(last).norm() * value * value;
   if (!(value > kLeastScale && value < kMostScale) || !(deviation < kUnsure * value)) {
     throw std::invalid_argument(
         fmt::format("the motors' share of the commanded torque is not certain: {:.2g} +- {:.2g}; "

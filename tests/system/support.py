@@ -31,6 +31,9 @@ ASSETS = ROOT / "assets"
 
 Words = list[str | Path]
 
+# A shell starts programs in the background with Ctrl-C ignored, and those that they start as well.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 
 @dataclass(frozen=True)
 class Result:

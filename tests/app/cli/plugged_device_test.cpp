@@ -59,7 +59,7 @@ class PluggedDevice : public test::Program {
     const int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);
     close(nothing);
-    interrupted = false;
+    allow_signals();
     fs::create_directories(temp_ / "home/limpid");
     fs::permissions(temp_ / "home/limpid", fs::perms::owner_all);
   }
@@ -70,8 +70,7 @@ class PluggedDevice : public test::Program {
     }
     dup2(terminal_, STDIN_FILENO);
     close(terminal_);
-    interrupted = false;
-    for (const int each : {SIGINT, SIGTERM, SIGHUP}) std::signal(each, SIG_DFL);
+    allow_signals();
   }
   void plug(const char* name = "pen") {
     const char* words[] = {"python3", "-c", kPen, LIMPID_ASSETS_DIR "/python", name, nullptr};
@@ -102,6 +101,12 @@ class PluggedDevice : public test::Program {
   }
 
  private:
+  // A shell starts programs in the background with Ctrl-C ignored, and commands leave that so.
+  static void allow_signals() {
+    interrupted = false;
+    for (const int each : {SIGINT, SIGTERM, SIGHUP}) std::signal(each, SIG_DFL);
+  }
+
   int terminal_;
   std::vector<pid_t> programs_;
 };

@@ -148,6 +148,9 @@ TEST(FiguresOf, LightnessSortTheProposedLawByItsEta) {
 TEST(FiguresOf, ObserverShowItsResponseAtThreeGains) {
   const Made made("observer");
   const std::string title = "Estimated / true human torque, heaviest mode (lines: theory)";
+  const FigurePanel& response =
+      *std::ranges::find(made.figure().panels, title, &FigurePanel::title);
+  EXPECT_TRUE(response.log_x && response.log_y);
   std::size_t at = 0;
   for (const double alpha : {0.0035, 0.035, 0.35}) {
     const Kept kept = made.kept(fmt::format("alpha-{:.3g}", alpha));

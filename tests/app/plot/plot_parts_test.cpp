@@ -390,6 +390,12 @@ TEST_F(MarkLabels, KeepClearOfCurvesAndOfWhatABandSays) {
   EXPECT_NEAR(row_with(100, 200, 0.2f), 463, 1);
   EXPECT_NEAR(row_with(190, 240, 0.6f), 463, 1);
   EXPECT_NEAR(row_with(190, 240, 0.02f), 463, 1);
+  std::vector<Trace> everywhere(1);
+  TracePen pen(everywhere[0]);
+  pen.put({190, -100, 100});
+  pen.put({240, -100, 100});
+  label({0, 0}, everywhere);
+  expect_said("aa", {268, 463}, palette_.muted);
   spec_.bands = {{.channel = 1, .names = {"", "a", "b", "c"}, .key = "said"}};
   history_.mark(4, "in words", "said");
   history_.mark(5, "still", "other");

@@ -497,6 +497,22 @@ TEST_F(SceneFields, OfAPlaneMoveAPointOfIt) {
   EXPECT_EQ(object().pose.translation(), Vec3(0, 0.012, 0));
 }
 
+TEST_F(SceneFields, OfANameTakeItWholeWhenItIsLeft) {
+  open({body_of(Sphere{0.02})});
+  const auto place = noted_place("panel", "name");
+  ASSERT_TRUE(place);
+  click(*place);
+  for (const char* letters : {"m", "ar", "ble"}) {
+    EXPECT_EQ(object().name, "it");
+    ImGui::GetIO().AddInputCharactersUTF8(letters);
+    frames(2);
+  }
+  click(ImVec2{200, kHeight - 10});
+  EXPECT_THAT(object().name, HasSubstr("marble"));
+  document_.undo();
+  EXPECT_EQ(object().name, "it");
+}
+
 TEST_F(SceneFields, OfABallMoveItsCentreAndSize) {
   Object ball;
   ball.shape = Sphere{0.02};
