@@ -10,6 +10,7 @@
 #include "app/run/analysis.h"
 #include "app/run/wall_tap.h"
 #include "core/dynamics/arm.h"
+#include "core/math/eigen.h"
 #include "core/math/high_pass.h"
 #include "devices/files/urdf_file.h"
 
@@ -43,7 +44,7 @@ Came came_of(const RunPlan& plan, const TapPlace& place, const WallTap& tap,
     fast2 += v.squaredNorm();
     const Eigen::VectorXd hand = vector_at(s, k, Column::hand_torque);
     const Eigen::MatrixXd lever = arm_at(plan.arm, x).J.transpose();
-    force -= place.out.dot(lever.colPivHouseholderQr().solve(hand));
+    force -= place.out.dot(Vec3(least_squares(lever, hand)));
     depth += std::max(0.0, place.depth(tip));
   }
   came.chatter = std::sqrt(fast2 / static_cast<double>(judged));

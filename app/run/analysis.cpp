@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +19,7 @@ namespace {
 bool stable(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d, const Parameters& p,
             const Eigen::MatrixXd& K_h, const Eigen::MatrixXd& B_h, double eta) {
   const Eigen::Index n = M_L.rows();
-  const Eigen::MatrixXd W = M_L.inverse(), I = Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd W = inverse(M_L), I = Eigen::MatrixXd::Identity(n, n);
   const Eigen::MatrixXd weights = gain_weights(p, b_d).asDiagonal();
   const double spring = p.k_vc / (p.b_v + p.b_vc), drag = p.b_vc / (p.b_v + p.b_vc);
   const double k = p.k_vc - p.b_vc * spring, b = p.b_vc - p.b_vc * drag;

@@ -1,6 +1,5 @@
 #include "app/run/sampled_wall.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -17,7 +16,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 // torque, M v' = -K x - D v + torque. By a Taylor series over a part of the tick that is doubled.
 MatrixXd motion_in_a_tick(const HeldArm& arm) {
   const Index n = arm.inertia.rows();
-  const MatrixXd mobility = arm.inertia.inverse();
+  const MatrixXd mobility = inverse(arm.inertia);
   MatrixXd A = MatrixXd::Zero(3 * n, 3 * n);
   A.block(0, n, n, n).setIdentity();
   A.block(n, 0, n, n) = -mobility * arm.stiffness;
@@ -79,7 +78,7 @@ double growth_behind_spring(const HeldArm& arm, const SpringDamper& g, const Mat
   const double T = arm.T, dampers = g.b_v + g.b_vc + g.k_vc * T / 2;
   const MatrixXd weights = arm.weights.asDiagonal();
   const MatrixXd impedance = 2 / T * M2 + dampers * weights + T / 2 * wall;
-  const MatrixXd answer = impedance.inverse();
+  const MatrixXd answer = inverse(impedance);
   return growth(begin + 4 * n, [&](const VectorXd& at) {
     const VectorXd x1 = at.head(n), x2 = at.segment(begin, n), v2 = at.segment(begin + n, n),
                    vbar2 = at.segment(begin + 2 * n, n), v1 = at.tail(n) / T;
@@ -102,11 +101,11 @@ double growth_fed_forward(const HeldArm& arm, const SpringDamper& g, const FedFo
   const MatrixXd one = MatrixXd::Identity(n, n), onto_proxy = forward.phi / eta * wall;
   const MatrixXd weights = arm.weights.asDiagonal();
   const MatrixXd impedance = 2 / T * M2 + dampers * weights + T / 2 * onto_proxy;
-  const MatrixXd answer = impedance.inverse();
+  const MatrixXd answer = inverse(impedance);
   // The observer's gain over a tick, 1 - E of core/coupling/force_observer.h.
   constexpr double kPole = 1 - 1 / std::numbers::sqrt2;
   const double a = T * forward.alpha;
-  const MatrixXd pole = forward.inertia + kPole * a * one, once = a * pole.inverse();
+  const MatrixXd pole = forward.inertia + kPole * a * one, once = a * inverse(pole);
   const MatrixXd gain = once - kPole * (1 - kPole) * once * once;
   return growth(begin + 8 * n, [&](const VectorXd& at) {
     const auto part = [&](Index i) -> VectorXd { return at.segment(begin + i * n, n); };

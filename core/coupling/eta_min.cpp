@@ -1,6 +1,5 @@
 #include "core/coupling/eta_min.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -44,7 +43,7 @@ std::vector<LockedMode> locked_modes(const Eigen::MatrixXd& M_L, const Eigen::Ve
 Eigen::VectorXcd grip_poles(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b, double alpha,
                             double eta, const Eigen::MatrixXd& K_h, const Eigen::MatrixXd& B_h) {
   const Eigen::Index n = M_L.rows();
-  const Eigen::MatrixXd M_inverse = M_L.inverse();
+  const Eigen::MatrixXd M_inverse = inverse(M_L);
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(n, n);
   const Eigen::MatrixXd D = b.asDiagonal();
   // x' = v;  M v' = -(b + B_h) v - K_h x + (1-eta)/eta f_hat;  f_hat' = alpha M^-1 (f - f_hat)

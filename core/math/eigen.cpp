@@ -1,6 +1,7 @@
 #include "core/math/eigen.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <unsupported/Eigen/LevenbergMarquardt>
 
@@ -69,6 +70,8 @@ Condensed condensed(const MatrixXd& A, const VectorXd& b) {
   return {R * qr.colsPermutation().transpose(),
           VectorXd(qr.householderQ().adjoint() * b).head(A.cols())};
 }
+
+MatrixXd inverse(const MatrixXd& A) { return A.inverse(); }
 
 MatrixXd inverse_of_symmetric(const MatrixXd& A) {
   const SymmetricEigen parts = symmetric_eigen(A);

@@ -52,6 +52,9 @@ struct Condensed {
 };
 Condensed condensed(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
+// Returns the inverse of a square matrix.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
+
 // Returns the inverse of a symmetric matrix all of whose eigenvalues are above 0.
 Eigen::MatrixXd inverse_of_symmetric(const Eigen::MatrixXd& A);
 

@@ -1,12 +1,12 @@
 // The virtual device against motions known by other means.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include "core/math/eigen.h"
 #include "devices/simulated/virtual_device.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/wheel.h"
@@ -136,7 +136,7 @@ class ReferenceArm {
     arm_.point_jacobian(f, arm_.dof() - 1, arm_.tip(f), J);
     const Vec3 pull = p.hand_stiffness * (target - arm_.tip(f)) + p.hand_damping * (rate - J * v);
     const Vector whole = torque - Cv - p.damping * v + J.transpose() * pull;
-    return Eigen::MatrixXd(M).ldlt().solve(Eigen::VectorXd(whole));
+    return least_squares(M, whole);
   }
 
   Arm<kAnyDof> arm_;

@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
-
 #include "core/dynamics/random.h"
+#include "core/math/eigen.h"
 
 namespace limpid {
 namespace {
@@ -56,7 +55,7 @@ TEST(EncoderFilter, FindsWhatLeastSquaresOverAllReadingsDoes) {
       MatrixXd S = known * motion.prior * known.transpose();
       S.diagonal().array() += q * q / 12;
       const MatrixXd across = motion.state * motion.prior * known.transpose();
-      const VectorXd found = across * S.ldlt().solve(y.head(k + 1));
+      const VectorXd found = across * least_squares(S, y.head(k + 1));
       for (int i = 0; i < 3; ++i) {
         ASSERT_NEAR(at[i], found[i], 1e-3 * std::abs(found[i]) + 1e-7 * std::abs(at[2]));
       }

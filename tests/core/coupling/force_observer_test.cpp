@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "core/math/eigen.h"
@@ -24,9 +23,7 @@ struct Body {
 
   explicit Body(const Matrix& inertia)
       : M(inertia), v(Vector::Zero(inertia.rows())), b_d(Vector::Zero(inertia.rows())) {}
-  void live(double T, const Vector& torque) {
-    v += T * Vector(Eigen::MatrixXd(M).ldlt().solve(Eigen::VectorXd(torque)));
-  }
+  void live(double T, const Vector& torque) { v += T * least_squares(M, torque); }
   const Vector& estimate(Observer& observer, double alpha, double T) const {
     return observer.estimate(alpha, T, M, Matrix::Zero(M.rows(), M.rows()), v, b_d);
   }
@@ -175,7 +172,7 @@ struct SampledBody {
     return s;
   }
   void live(double T, const Vector& torque) {
-    const Vector a = Eigen::MatrixXd(M).ldlt().solve(Eigen::VectorXd(torque));
+    const Vector a = least_squares(M, torque);
     x += T * v + 0.5 * T * T * a;
     v += T * a;
   }

@@ -1,11 +1,10 @@
 // A tick of the predictive law, solved again with matrices written out from its equations.
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "core/coupling/law.h"
 #include "core/coupling/ledger.h"
 #include "core/coupling/predictive.h"
+#include "core/math/eigen.h"
 #include "core/tick/parameters.h"
 #include "core/touch/proxy.h"
 #include "tests/support/random_arm.h"
@@ -57,7 +56,7 @@ TEST(PredictiveLaw, IsTheJointSolutionOfItsEquations) {
     const Eigen::MatrixXd C_EL = phi.transpose() * C1 + (phi.transpose() - I) * C2;
     const Eigen::MatrixXd C_LE = -C_EL.transpose();
     const Eigen::MatrixXd sum = C_LE - p.b_v * I;
-    const Eigen::VectorXd w = sum.fullPivLu().solve(tau1 + tau2 + C_LE * u);
+    const Eigen::VectorXd w = least_squares(sum, tau1 + tau2 + C_LE * u);
     const Eigen::VectorXd v_E = w - u, v_L = w - phi * v_E;
     const Eigen::VectorXd s0 = p.k_vc * (x1 - x2);
     const double c = p.b_vc + p.k_vc * T / 2;

@@ -35,7 +35,7 @@ struct Device {
   void step(const Vector& torque) {
     Matrix D = 2 / T * M + C;
     D.diagonal() += b;
-    w = D.partialPivLu().solve(2 / T * (M * v) + torque);
+    w = least_squares(D, 2 / T * (M * v) + torque);
     x += T * w;
     v = 2 * w - v;
   }
@@ -180,7 +180,7 @@ void PredictorOfHeavyHands::find(double p, double q, double exact) {
       const Vector tau = random_.vector(n(), 0.2);
       predictor_.correct(read(), T, q, p, both);
       predictor_.model(light, device_.C, device_.b, J_, T, p, 1, both ? kMass : 0, 0, false);
-      const Levers<kAnyDof> on_tip = light.ldlt().solve(Matrix(J_.transpose()));
+      const Levers<kAnyDof> on_tip = Matrix(light).inverse() * J_.transpose();
       predictor_.expect_hand(on_tip, J_, both ? kMass : 0, kForceRate);
       predictor_.applied(tau, both);
       device_.step(tau);

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <cmath>
 
+#include "core/math/eigen.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -40,7 +39,7 @@ TEST(TipAlong, SpringsThatDifferGiveWayByTheirSum) {
     TipAlong tip;
     tip.lever2 = (J.transpose() * n).squaredNorm();
     EXPECT_NEAR(spring_at_tip(tip, 8 * weight_at_tip(J, weights, n)), stiffness, 1e-9 * stiffness);
-    const double softest = 1 / gives.eigenvalues().real().maxCoeff();
+    const double softest = 1 / symmetric_eigen(gives).values[2];
     const double lever = easiest(J, Eigen::MatrixXd::Identity(joints, joints)).lever;
     EXPECT_NEAR(8 * longest_levers_weight(J, weights) / (lever * lever), softest, 1e-9 * softest);
   }
@@ -61,9 +60,8 @@ TEST(TipAlong, LedMassIsTheLeastThatMovesTheTipSo) {
     const Eigen::MatrixXd still = Eigen::MatrixXd::Identity(joints, joints) - reach * J;
     // v = J^+ n + N z with the z that has the least energy: (N' M N) z = -N' M J^+ n.
     const Eigen::VectorXd base = reach * n;
-    const Eigen::VectorXd z = (still.transpose() * M * still)
-                                  .completeOrthogonalDecomposition()
-                                  .solve(-(still.transpose() * M * base));
+    const Eigen::VectorXd z =
+        least_squares(still.transpose() * M * still, -(still.transpose() * M * base));
     const Eigen::VectorXd v = base + still * z;
     EXPECT_LT((J * v - n).norm(), 1e-9);
     EXPECT_NEAR(v.dot(M * v), tip.led, 1e-6 * tip.led);

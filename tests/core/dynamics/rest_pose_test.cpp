@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
-
 #include "core/dynamics/arm.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/singular_values.h"
 
 namespace limpid {
 namespace {
@@ -15,8 +14,8 @@ double roundness(const ArmDescription& description, const Eigen::VectorXd& x) {
   arm.frames(Vec<kAnyDof>(x), f);
   Jacobian<kAnyDof> J;
   arm.point_jacobian(f, arm.dof() - 1, arm.tip(f), J);
-  const auto s = Eigen::JacobiSVD<Eigen::MatrixXd>(Eigen::MatrixXd(J)).singularValues().eval();
-  return s[s.size() - 1] / s[0];
+  const Eigen::VectorXd s = test::singular_values(J);
+  return s[0] / s[s.size() - 1];
 }
 
 TEST(RestPose, IsTheMiddleOfTheLimits) {

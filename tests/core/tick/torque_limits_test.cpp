@@ -1,10 +1,10 @@
 // The motors' torque against both of its limits, the force at the tip by an independent solution.
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
-
+#include "core/math/eigen.h"
 #include "core/tick/motor_stage.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/singular_values.h"
 
 namespace limpid {
 namespace {
@@ -17,9 +17,14 @@ constexpr double kTip = 10;  // [N]
 // The smallest force at the tip that gives as much of this torque as it can, by its singular
 // values. Directions that would take a thousand times the force of another one are left out.
 double force_of(const Vector& tau, const Jacobian<kAnyDof>& J) {
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(J.transpose(), Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(1e-3);
-  return svd.solve(tau).norm();
+  const SymmetricEigen squares = symmetric_eigen(J * J.transpose());
+  Vec3 force = Vec3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (squares.values[i] < 1e-6 * squares.values[2]) continue;
+    const Vec3 along = squares.vectors.col(i);
+    force += along.dot(J * tau) / squares.values[i] * along;
+  }
+  return force.norm();
 }
 
 struct SomeArm {
@@ -73,7 +78,7 @@ TEST(TorqueLimits, HoldJointsAndTipTogetherForAHundredThousandTorques) {
     some.limit *= random.between(1, 6);
     for (int pose = 0; pose < 20; ++pose) {
       const Jacobian<kAnyDof> J = some.at(random.vector(some.arm.dof(), 3));
-      const Eigen::VectorXd levers = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
+      const Eigen::VectorXd levers = test::singular_values(J);
       const bool stretched = levers.minCoeff() < 0.01 * levers.maxCoeff();
       const TorqueLimits<kAnyDof> limits(some.limit, J, kTip);
       for (int i = 0; i < 100; ++i) {

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <set>
 
+#include "core/math/eigen.h"
 #include "core/touch/wall_force.h"
 #include "tests/support/body_worlds.h"
 #include "tests/support/meshes.h"
@@ -42,7 +42,7 @@ struct Answer {
     contact.most_damping = 0.34;
   }
   Motion<3> motion(const Eigen::VectorXd& b) const {
-    const Eigen::VectorXd x = A.fullPivLu().solve(b);
+    const Eigen::VectorXd x = least_squares(A, b);
     return {x.head<3>(), x.tail<3>()};
   }
   // Motion of the proxy under a contact torque.
@@ -154,7 +154,7 @@ Vec3 press(const Scene& scene, Random& random) {
 void expect_its_own_law(const Bench& bench, const Contact<3>& c, const ContactMemory& before) {
   const Vec3 u = bench.motion.u, g = -c.gradient;
   const double response = T * g.dot(bench.answer.moved(g));
-  const double mass = 1 / g.dot(bench.answer.M.fullPivLu().solve(g));
+  const double mass = 1 / g.dot(Vec3(least_squares(bench.answer.M, g)));
   const double own = std::min(0.2 * mass / T, std::sqrt(c.material.stiffness * mass));
   const double B = std::min(own + c.material.damping, 0.34 * mass / T);
   const double a = T * c.gradient.dot(u) + response * c.force;
@@ -320,7 +320,7 @@ TEST(ContactSolve, ForgetsWhatItLeft) {
     ASSERT_FALSE(blank(bench.contacts.memory(0)));
     // The arm leaves within one tick, by any distance.
     const Jacobian<3> J = bench.tip_jacobian();
-    bench.x += J.fullPivLu().solve(Vec3(0, 0, 2e-3 + away));
+    bench.x += least_squares(J, Vec3(0, 0, 2e-3 + away));
     bench.tick(Vec3::Zero());
     EXPECT_TRUE(blank(bench.contacts.memory(0))) << away;
     EXPECT_EQ(bench.f2, Vec3::Zero());

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <vector>
 
+#include "core/math/eigen.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/singular_values.h"
 
 namespace limpid {
 namespace {
@@ -93,8 +93,8 @@ TEST(FreeSpace, PushesOnlyOutwardsAndOnlyWithPlanesThatHold) {
       ASSERT_EQ(x, c);
       continue;
     }
-    const Eigen::VectorXd weights = normals.colPivHouseholderQr().solve(x - c);
-    const double strain = 1 / normals.jacobiSvd().singularValues().minCoeff();
+    const Eigen::VectorXd weights = least_squares(normals, x - c);
+    const double strain = 1 / test::singular_values(normals)[0];
     ASSERT_LT((normals * weights - (x - c)).norm(), 1e-12 * strain * size);
     ASSERT_GE(weights.minCoeff(), -1e-12 * strain * strain * size);
     ASSERT_LT((space.onto(c, active) - x).norm(), 1e-15 * size);

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <tuple>
 
+#include "core/math/eigen.h"
 #include "tests/support/proxy_drive.h"
 #include "tests/support/random_arm.h"
 
@@ -87,7 +87,7 @@ void exact_motion(const Arm<kAnyDof>& arm, double ratio, const Vector& torque, d
     Vector Cv;
     arm.frames(at, f);
     arm.inertia_bias(f, rate, M, Cv);
-    return Vector(Eigen::MatrixXd(ratio * M).ldlt().solve(Eigen::VectorXd(torque - ratio * Cv)));
+    return Vector(least_squares(ratio * M, torque - ratio * Cv));
   };
   constexpr int kSteps = 400;
   const double h = time / kSteps;
