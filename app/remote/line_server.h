@@ -17,8 +17,6 @@
 #include <string_view>
 #include <thread>
 
-struct sockaddr_un;
-
 namespace limpid {
 
 // Thrown if a socket cannot be opened; what() says why, for people.
@@ -45,7 +43,7 @@ class ControlSocket {
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  void listen_at(const sockaddr_un& address);
+  void listen_at();
 
   std::filesystem::path path_;
   int lock_ = -1, file_ = -1;

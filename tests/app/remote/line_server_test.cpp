@@ -11,8 +11,10 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <future>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/support/temp_dir.h"
 #include "tests/support/until.h"
@@ -318,6 +320,28 @@ TEST(ControlPath, IsInTheUsersRuntimeFolderAndHasAPlainName) {
   EXPECT_THROW(control_path("control"), ListenError);
   unsetenv("XDG_RUNTIME_DIR");
   EXPECT_THROW(control_path("control"), ListenError);
+}
+
+TEST(ControlSocket, CanBeConnectedToFromWhenItIsSeen) {
+  const test::TempDir dir;
+  const std::filesystem::path path = dir / "a.control";
+  for (int i = 0; i < 300; ++i) {
+    std::atomic<bool> waits = false;
+    auto seen = std::async(std::launch::async, [&] {
+      waits = true;
+      while (!std::filesystem::exists(path)) {
+      }
+      return Peer(path).connected();
+    });
+    while (!waits) std::this_thread::yield();
+    const ControlSocket socket(path);
+    ASSERT_TRUE(seen.get()) << i;
+  }
+  std::vector<std::string> left;
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path())) {
+    left.push_back(entry.path().filename());
+  }
+  EXPECT_THAT(left, testing::ElementsAre("a.control.lock"));
 }
 
 TEST(ControlSocket, RefusesAFolderThatIsALink) {
