@@ -491,6 +491,25 @@ TEST(VirtualDevice, IsReadAtTheNearestEncoderStep) {
   EXPECT_NEAR(reading.x[1], -4e-3, 1e-15);
 }
 
+TEST(VirtualDevice, IsPlacedWithItsMotorsWhereTransmissionsAreElastic) {
+  VirtualDevice<kAnyDof> device(two_wheels());
+  Parameters p;
+  p.damping = 0;
+  p.resonance = 100;
+  device.expect(p, kNoHand);
+  const double x[] = {0.3, -0.2}, v[] = {0.5, -1};
+  device.place(x, v, Vec3::Zero());
+  DeviceReading reading;
+  ASSERT_TRUE(device.read(reading));
+  EXPECT_EQ(reading.x[0], 0.3);
+  EXPECT_EQ(reading.x[1], -0.2);
+  const double none[] = {0, 0};
+  for (int k = 0; k < 100; ++k) device.write(none);
+  ASSERT_TRUE(device.read(reading));
+  EXPECT_NEAR(reading.x[0], 0.3 + 0.1 * 0.5, 1e-9) << "motor and link go on together";
+  EXPECT_NEAR(reading.x[1], -0.2 - 0.1 * 1, 1e-9);
+}
+
 TEST(VirtualDevice, IsReadAnewEachTimeAndLivesThroughATickAWrite) {
   VirtualDevice<kAnyDof> device(two_wheels());
   EXPECT_EQ(device.traits().dof, 2);

@@ -55,6 +55,17 @@ TEST(ArmLook, MirrorsWithoutTurningInsideOut) {
   EXPECT_LT((mirrored - out.cwiseProduct(Eigen::Vector3f(2, -1, 2)).normalized()).norm(), 1e-6f);
 }
 
+TEST(ArmLook, ShadesWhatIsStretchedAsItsTrianglesLie) {
+  for (const Vec3& scale : {Vec3(1, 2, 3), Vec3(0.5, 4, 1), Vec3(1, -2, 1)}) {
+    Model tilted = triangle();
+    for (Vertex& v : tilted.vertices) v.normal = facing(tilted);
+    Visual visual = mesh(scale);
+    visual.model = std::make_shared<const Model>(tilted);
+    const Model model = drawn(visual);
+    for (const Vertex& v : model.vertices) EXPECT_LT((v.normal - facing(model)).norm(), 1e-6f);
+  }
+}
+
 TEST(ArmLook, MakesSmallWithoutTurningInsideOut) {
   const Model model = drawn(mesh({0.5, 0.5, 0.5}));
   EXPECT_EQ(model.bounds().max().y(), 1);

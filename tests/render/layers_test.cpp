@@ -443,6 +443,11 @@ TEST_F(Looks, AreCoarseWhereThereIsTooMuchToDraw) {
   view_->set_quality({.msaa = 4, .shadow_size = 0, .soft = false, .triangles = 1});
   EXPECT_LE(apart(plate(lids), empty), 2);
   EXPECT_GT(apart(plate({}), empty), 60) << "what has no coarse version stays";
+  const auto same = [](Model& m) {
+    m.coarse = m.indices;
+    m.coarse_parts = m.parts;
+  };
+  EXPECT_GT(apart(plate(same), empty), 60) << "a coarse version that the eye sees";
 }
 
 // The picture goes on beyond its edge as its finish says.

@@ -205,6 +205,16 @@ TEST_F(Sandbox, HasNoDescriptorsOfTheProgramThatStartedIt) {
   close(file);
 }
 
+TEST_F(Sandbox, LeavesNoDescriptorOpen) {
+  EXPECT_EQ(leaves_with([] {
+              long open = 0;
+              for (int file = 3; file < 64; ++file)
+                open += lseek(file, 0, SEEK_CUR) != -1 || errno != EBADF;
+              return -open;
+            }),
+            kDone);
+}
+
 TEST_F(Sandbox, EndsInAnOrderlyWay) {
   EXPECT_EQ(leaves_with([] {
               const std::vector<char> much(64 << 20, 'x');

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
+#include "render/model/model_building.h"
 #include "tests/render/model/gltf_builder.h"
 
 namespace limpid {
@@ -60,6 +62,20 @@ TEST(GltfModel, ReadsATriangleWithItsMaterial) {
 TEST(GltfModel, MakesNormalsWhereTheFileHasNone) {
   const Model model = parse_gltf(glb(triangle_json(), triangle_data()), "part.glb");
   for (const Vertex& v : model.vertices) EXPECT_TRUE(v.normal.isApprox(Eigen::Vector3f::UnitZ()));
+}
+
+TEST(GltfModel, MakesNormalsOfTrianglesOfAnySize) {
+  std::vector<Vertex> corners(3);
+  for (const float size : {1e-3f, 0.2f, 50.0f}) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = {size * Eigen::Vector3f::Unit(static_cast<Eigen::Index>(i)),
+                    Eigen::Vector3f::Zero()};
+    }
+    fill_normals(corners, std::array<std::uint32_t, 3>{0, 1, 2});
+    for (const Vertex& v : corners) {
+      EXPECT_LT((v.normal - Eigen::Vector3f::Ones().normalized()).norm(), 1e-6f) << size;
+    }
+  }
 }
 
 TEST(GltfModel, AppliesTheTransformsOfNodes) {

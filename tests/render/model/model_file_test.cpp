@@ -244,6 +244,27 @@ TEST_F(ModelFolder, CanBeCarriedAway) {
     EXPECT_EQ(there.vertices[i].position, here.vertices[i].position);
 }
 
+TEST_F(ModelFolder, IsCarriedAwayWithTheNormalsOfItsSmoothPart) {
+  const std::string text =
+      "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0.6 0 0.8\nvn 0 0.6 0.8\nvn 0 0 1\n"
+      "usemtl red\nf 1//1 2//2 3//3\nusemtl seen\nf 1 2 4\n";
+  std::vector<unsigned char> whole;
+  const Model here = parse_model(bytes_of(text), "a.obj", folder_, {}, &whole);
+  const Model there = parse_model(whole, "a.obj");
+  for (const Model* model : {&here, &there}) {
+    ASSERT_EQ(model->indices.size(), 6u);
+    std::map<std::string, int> seen;
+    for (const std::uint32_t i : model->indices) {
+      const Vector3f n = model->vertices[i].normal;
+      ++seen[fmt::format("{:.1f} {:.1f} {:.1f}", n.x() + 0.0f, std::abs(n.y()), n.z() + 0.0f)];
+    }
+    EXPECT_EQ(seen,
+              (std::map<std::string, int>{
+                  {"0.6 0.0 0.8", 1}, {"0.0 0.6 0.8", 1}, {"0.0 0.0 1.0", 1}, {"0.0 1.0 0.0", 3}}))
+        << (model == &here ? "as it is read" : "carried away");
+  }
+}
+
 // An OBJ does not say which side is seen; a density that nobody could see is not meant.
 TEST_F(ModelFolder, IsSeenFromBothSidesAndAsDenseAsItsMaterialSays) {
   for (const auto& [dense, opacity] :
