@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
@@ -125,19 +126,57 @@ class RowsTold {
   bool contacts_ = false;         // are recorded
 };
 
-// Settings of the first row; empty if this version does not know them.
-std::string settings_text(const Session& session, const std::string& file) {
+// Settings of a lane's first row; nothing if this version does not know them.
+std::optional<Parameters> first_settings(const Session& lane, const std::string& file) {
   try {
-    const Parameters p = session_parameters(session, file);
-    std::string text =
-        fmt::format("coupling at first        {}, eta {:.3g}\n", name(p.kind), p.eta);
-    if (!p.linked()) return text;
-    return text +
-           fmt::format("link at first            {} ticks each way, jitter {}, loss {:.3g}\n",
-                       p.link_delay, p.link_jitter, p.link_loss);
+    return session_parameters(lane, file);
   } catch (const std::exception&) {
     return {};
   }
+}
+
+// Settings that differ from others, a line each; what stands in lines of its own is left out.
+std::string unlike_text(const Parameters& p, const Parameters& others, const std::string& title) {
+  std::string text;
+  for (const ParameterInfo& setting : parameter_table()) {
+    const std::string_view key = setting.key;
+    if (key == "coupling.kind" || key == "coupling.eta" || key == "loop.tick") continue;
+    if (p.linked() && key.starts_with("link.")) continue;
+    const std::string value = parameter_text(p, setting);
+    if (value == parameter_text(others, setting)) continue;
+    text += fmt::format("{:<25}{} = {}\n", text.empty() ? title : "", key, value);
+  }
+  return text;
+}
+
+std::string settings_text(const Session& session, const std::string& file) {
+  std::string text;
+  std::optional<Parameters> before;
+  for (std::size_t i = 0; i < session.lanes(); ++i) {
+    const auto p = first_settings(session.lane(i), file);
+    if (!p) return text;
+    const std::string of = i == 0 ? "" : fmt::format("{}, ", lane_name(i));
+    text += fmt::format("{:<25}{}, eta {:.3g}\n", of + "coupling at first", name(p->kind), p->eta);
+    if (p->linked()) {
+      text += fmt::format("{:<25}{} ticks each way, jitter {}, loss {:.3g}\n", of + "link at first",
+                          p->link_delay, p->link_jitter, p->link_loss);
+    }
+    text += unlike_text(*p, before.value_or(Parameters{}),
+                        i == 0 ? "settings unlike defaults" : of + "other settings");
+    if (i == 0) before = p;
+  }
+  return text;
+}
+
+// All settings of a lane's first row, by key.
+nlohmann::ordered_json settings_json(const Parameters& p) {
+  nlohmann::ordered_json all;
+  for (const ParameterInfo& setting : parameter_table()) {
+    const std::string text = parameter_text(p, setting);
+    const auto value = nlohmann::ordered_json::parse(text, nullptr, false);
+    all[std::string(setting.key)] = value.is_discarded() ? nlohmann::ordered_json(text) : value;
+  }
+  return all;
 }
 
 // Metadata of a CSV by W3C's "CSV on the Web": the source of the table.
@@ -179,6 +218,11 @@ void print_json(const InfoOptions& options, const Session& session, const RowsTo
                               {"length_s", static_cast<double>(told.count()) * i.tick},
                               {"objects", i.bodies}};
   json.update(runs_json(told.lanes(), warnings, told.at_limit()));
+  for (std::size_t lane = 0; lane < session.lanes(); ++lane) {
+    if (const auto p = first_settings(session.lane(lane), options.session)) {
+      json["runs"][lane]["settings"] = settings_json(*p);
+    }
+  }
   json["changes"] = nlohmann::ordered_json::array();
   for (const SettingChange& change : session.changes) {
     json["changes"].push_back({{"row", change.row}, {"setting", change.setting}});

@@ -235,6 +235,24 @@ TEST_F(Commands, RunOnADeviceHasNoOtherHand) {
   EXPECT_THAT(refused({"run", "--live", "nothing:1", "--yes"}), HasSubstr("is not connected"));
 }
 
+TEST_F(Commands, InfoSaysTheSettingsOfEachRun) {
+  done({"run", "--duration", "0.05", "--coupling", "proposed", "--set", "observer.alpha=0.02",
+        "--record", "a.h5", "--twin", "coupling.kind=predictive", "coupling.k_vc=1.5"});
+  const std::string text = done({"info", "a.h5"});
+  EXPECT_THAT(text, HasSubstr("coupling at first        proposed, eta 1\n"
+                              "settings unlike defaults observer.alpha = 0.02\n"
+                              "twin, coupling at first  predictive, eta 1\n"
+                              "twin, other settings     coupling.k_vc = 1.5\n"));
+  const json runs = parsed({"info", "a.h5", "--json"})["runs"];
+  EXPECT_EQ(runs[0]["settings"]["coupling.kind"], "proposed");
+  EXPECT_EQ(runs[0]["settings"]["observer.alpha"], 0.02);
+  EXPECT_EQ(runs[1]["settings"]["coupling.kind"], "predictive");
+  EXPECT_EQ(runs[1]["settings"]["coupling.k_vc"], 1.5);
+  for (const ParameterInfo& setting : parameter_table()) {
+    EXPECT_TRUE(runs[0]["settings"].contains(setting.key)) << setting.key;
+  }
+}
+
 TEST_F(Commands, InfoSaysWhatARecordingHolds) {
   done({"run", "--duration", "0.25", "--eta", "0.8", "--coupling", "proposed", "--seed", "7",
         "--variation", "1", "--scene", "stack.toml", "--record", "a.h5"});
