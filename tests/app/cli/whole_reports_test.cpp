@@ -109,8 +109,8 @@ TEST_F(WholeReports, OfInfoSayAllThatARecordingHolds) {
       "hand                     a hand\n"
       "coupling at first        proposed, eta 0.05\n"
       "link at first            1 ticks each way, jitter 0, loss 0\n"
-      "settings unlike defaults hand.stiffness = 3000\n"
-      "                         hand.damping = 0\n"
+      "settings unlike defaults hand.stiffness = 3000.0\n"
+      "                         hand.damping = 0.0\n"
       "limits of force          tip_force = 3 range = 0.5\n"
       "arm                      3 joints, tick 0.001 s, seed 11\n"
       "length                   4.000 s\n" +

@@ -205,17 +205,6 @@ TEST_F(Sandbox, HasNoDescriptorsOfTheProgramThatStartedIt) {
   close(file);
 }
 
-TEST_F(Sandbox, LeavesNoDescriptorOpen) {
-  EXPECT_EQ(leaves_with([] {
-              struct stat is {};
-              int open = 0;
-              for (int file = 3; file < 64; ++file) open += fstat(file, &is) == 0 ? 1 : 0;
-              errno = open;
-              return open == 0 ? 0L : -1L;
-            }),
-            kDone);
-}
-
 TEST_F(Sandbox, EndsInAnOrderlyWay) {
   EXPECT_EQ(leaves_with([] {
               const std::vector<char> much(64 << 20, 'x');
