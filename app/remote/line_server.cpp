@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/base/descriptor.h"
+#include "core/base/listening_socket.h"
 
 namespace limpid {
 namespace {
@@ -149,32 +150,10 @@ fs::path control_path(const std::string& name) {
 ControlSocket::ControlSocket(const fs::path& path) : path_(path) {
   make_private(path.parent_path());
   lock_ = take_lock(path, address_of(path));
-  try {
-    listen_at();
-  } catch (...) {
-    if (file_ >= 0) close(file_);
-    close(lock_);
-    throw;
-  }
-}
-
-// Makes a socket under another name, shorter than any that is allowed, and gives it its own once it
-// listens: whoever sees it can connect. Replaces what a killed program has left.
-void ControlSocket::listen_at() {
-  const fs::path unready = path_.parent_path() / fmt::format(".{}", getpid());
-  const sockaddr_un address = address_of(unready);
-  unlink(unready.c_str());
-  file_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  // Nobody else can enter the folder, so the socket's mode does not matter for a moment.
-  if (file_ >= 0 &&
-      bind(file_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 &&
-      chmod(unready.c_str(), kFileMode) == 0 &&
-      listen(file_, static_cast<int>(LineServer::kMostClients)) == 0 &&
-      rename(unready.c_str(), path_.c_str()) == 0) {
-    return;
-  }
-  const ListenError error = failed(path_);
-  unlink(unready.c_str());
+  file_ = listen_under(path, SOCK_STREAM, static_cast<int>(LineServer::kMostClients));
+  if (file_ >= 0) return;
+  const ListenError error = failed(path);
+  close(lock_);
   throw error;
 }
 

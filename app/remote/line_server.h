@@ -43,8 +43,6 @@ class ControlSocket {
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  void listen_at();
-
   std::filesystem::path path_;
   int lock_ = -1, file_ = -1;
 };

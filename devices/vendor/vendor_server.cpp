@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/base/descriptor.h"
+#include "core/base/listening_socket.h"
 #include "core/realtime/realtime.h"
 #include "devices/hid/raw_device.h"
 #include "devices/vendor/servo.h"
@@ -38,24 +39,13 @@ sigset_t ends() {
   return signals;
 }
 
-// A socket that listens, and is found under its name once it does.
 int listen_on(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  const std::string unready = path + ".new";
-  if (unready.size() >= sizeof(address.sun_path)) {
-    throw VendorError(fmt::format("{}: a socket's path has at most {} characters", path,
-                                  sizeof(address.sun_path) - 5));
+  if (constexpr std::size_t kRoom = sizeof(sockaddr_un::sun_path); path.size() >= kRoom) {
+    throw VendorError(
+        fmt::format("{}: a socket's path has at most {} characters", path, kRoom - 1));
   }
-  unready.copy(address.sun_path, unready.size());
-  ::unlink(unready.c_str());
-  const int file = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (file < 0 || ::bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      ::listen(file, 1) != 0 || ::rename(unready.c_str(), path.c_str()) != 0) {
-    const int error = errno;
-    if (file >= 0) ::close(file);
-    throw VendorError(fmt::format("{}: {}", path, std::strerror(error)));
-  }
+  const int file = listen_under(path, SOCK_SEQPACKET, 1);
+  if (file < 0) throw VendorError(fmt::format("{}: {}", path, std::strerror(errno)));
   return file;
 }
 
