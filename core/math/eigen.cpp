@@ -73,11 +73,6 @@ Condensed condensed(const MatrixXd& A, const VectorXd& b) {
 
 MatrixXd inverse(const MatrixXd& A) { return A.inverse(); }
 
-MatrixXd inverse_of_symmetric(const MatrixXd& A) {
-  const SymmetricEigen parts = symmetric_eigen(A);
-  return parts.vectors * parts.values.cwiseInverse().asDiagonal() * parts.vectors.transpose();
-}
-
 VectorXd least_miss(const std::function<VectorXd(const VectorXd&)>& miss,
                     const std::function<MatrixXd(const VectorXd&)>& slope, const VectorXd& start) {
   VectorXd z = start;

@@ -55,9 +55,6 @@ Condensed condensed(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 // Returns the inverse of a square matrix.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
 
-// Returns the inverse of a symmetric matrix all of whose eigenvalues are above 0.
-Eigen::MatrixXd inverse_of_symmetric(const Eigen::MatrixXd& A);
-
 // Returns the z near `start` with the least |miss(z)|, found after Levenberg and Marquardt. `slope`
 // is the derivative of the miss, a row for each of its numbers.
 Eigen::VectorXd least_miss(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& miss,

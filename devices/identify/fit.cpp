@@ -211,9 +211,9 @@ class Fit {
     const Nearest nearest(guess_, weight_.asDiagonal() * rows_.A, weight_.cwiseProduct(b_), torque);
     const VectorXd q = nearest.found();
     const MatrixXd J = nearest.miss_slope(q);
-    const MatrixXd spread = inverse_of_symmetric(J.transpose() * J);
+    const MatrixXd back = LeastSquares(J).solution();
     const MatrixXd slope = nearest.slope(q);
-    const MatrixXd covariance = slope * spread * slope.transpose();
+    const MatrixXd covariance = slope * (back * back.transpose()) * slope.transpose();
     const VectorXd z = nearest.z(q);
 
     Identified out{.arm = guess_, .joints = {}, .middle = record_.x.colwise().mean(), .delay = {}};
