@@ -16,6 +16,8 @@
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/summary_json.h"
+#include "app/remote/remote_settings.h"
+#include "app/run/lane_settings.h"
 #include "app/run/provenance.h"
 #include "app/run/replay.h"
 #include "app/run/run_watch.h"
@@ -138,13 +140,12 @@ std::optional<Parameters> first_settings(const Session& lane, const std::string&
 // Settings that differ from others, a line each; what stands in lines of its own is left out.
 std::string unlike_text(const Parameters& p, const Parameters& others, const std::string& title) {
   std::string text;
-  for (const ParameterInfo& setting : parameter_table()) {
-    const std::string_view key = setting.key;
+  for (const ParameterInfo* setting : differing(p, others)) {
+    const std::string_view key = setting->key;
     if (key == "coupling.kind" || key == "coupling.eta" || key == "loop.tick") continue;
     if (p.linked() && key.starts_with("link.")) continue;
-    const std::string value = parameter_text(p, setting);
-    if (value == parameter_text(others, setting)) continue;
-    text += fmt::format("{:<25}{} = {}\n", text.empty() ? title : "", key, value);
+    text +=
+        fmt::format("{:<25}{} = {}\n", text.empty() ? title : "", key, parameter_text(p, *setting));
   }
   return text;
 }
@@ -172,9 +173,7 @@ std::string settings_text(const Session& session, const std::string& file) {
 nlohmann::ordered_json settings_json(const Parameters& p) {
   nlohmann::ordered_json all;
   for (const ParameterInfo& setting : parameter_table()) {
-    const std::string text = parameter_text(p, setting);
-    const auto value = nlohmann::ordered_json::parse(text, nullptr, false);
-    all[std::string(setting.key)] = value.is_discarded() ? nlohmann::ordered_json(text) : value;
+    all[setting.key] = json_of(value_of(setting, p));
   }
   return all;
 }

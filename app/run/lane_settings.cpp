@@ -20,6 +20,14 @@ const ParameterInfo* first_difference(const std::vector<const Parameters*>& lane
 
 }  // namespace
 
+std::vector<const ParameterInfo*> differing(const Parameters& one, const Parameters& other) {
+  std::vector<const ParameterInfo*> all;
+  for (const ParameterInfo& info : parameter_table()) {
+    if (parameter_text(one, info) != parameter_text(other, info)) all.push_back(&info);
+  }
+  return all;
+}
+
 void share_world(std::span<Parameters> lanes) {
   for (Parameters& other : lanes.subspan(1)) {
     const ControllerSettings own = other;

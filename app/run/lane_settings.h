@@ -1,4 +1,5 @@
-// Settings that all lanes of a run share, and names of lanes by those that differ.
+// Settings in which lanes or moments of a run differ, those that all lanes share, and names of
+// lanes.
 #pragma once
 
 #include <span>
@@ -10,6 +11,8 @@
 
 namespace limpid {
 
+// Returns the settings in which these differ, in the order of the table.
+std::vector<const ParameterInfo*> differing(const Parameters& one, const Parameters& other);
 // Gives all settings of the first lane but its ControllerSettings to the other ones.
 void share_world(std::span<Parameters> lanes);
 // Refuses a setting that all lanes share, as one of a single lane. `instead`: how all of them get

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/run/lane_settings.h"
 #include "devices/files/atomic_file.h"
 
 namespace limpid {
@@ -184,11 +185,10 @@ void Recorder::write_rows() {
 void Recorder::write_changes() {
   while (const auto change = changes_.pop()) {
     Parameters& known = known_[change->lane];
-    for (const ParameterInfo& info : parameter_table()) {
-      const std::string text = parameter_text(change->parameters, info);
-      if (text == parameter_text(known, info)) continue;
+    for (const ParameterInfo* info : differing(change->parameters, known)) {
       // An empty text gives a value back to the arm.
-      writer_.append(SettingChange{change->row, std::string(info.key) + " = " + text},
+      const std::string text = parameter_text(change->parameters, *info);
+      writer_.append(SettingChange{change->row, std::string(info->key) + " = " + text},
                      change->lane);
     }
     known = change->parameters;

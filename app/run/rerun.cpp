@@ -77,9 +77,8 @@ std::vector<std::string> changed_settings(const Session& session, const std::str
                                           const Parameters& chosen) {
   const Parameters before = session_parameters(session, where);
   std::vector<std::string> changes;
-  for (const ParameterInfo& info : parameter_table()) {
-    const std::string text = parameter_text(chosen, info);
-    if (text != parameter_text(before, info)) changes.push_back(std::string(info.key) + "=" + text);
+  for (const ParameterInfo* info : differing(chosen, before)) {
+    changes.push_back(std::string(info->key) + "=" + parameter_text(chosen, *info));
   }
   return changes;
 }

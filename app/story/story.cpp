@@ -262,10 +262,9 @@ void StorySettings::read(const TomlTable& step, const std::string& where, double
     return;
   }
   for (std::size_t lane = 0; lane < now_.size(); ++lane) {
-    for (const ParameterInfo& info : parameter_table()) {
-      const std::string value = parameter_text(now_[lane], info);
-      if (value == parameter_text(before[lane], info)) continue;
-      changes_[lane].push_back({time, fmt::format("{} = {}", info.key, value)});
+    for (const ParameterInfo* info : differing(now_[lane], before[lane])) {
+      changes_[lane].push_back(
+          {time, fmt::format("{} = {}", info->key, parameter_text(now_[lane], *info))});
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/fitted_gains.h"
+#include "app/run/lane_settings.h"
 #include "app/style/palette.h"
 #include "app/style/sliders.h"
 #include "app/style/theme.h"
@@ -413,24 +414,23 @@ void tell_changes(const Parameters& p, const Parameters& recorded,
 // Draws what a re-run will change, and buttons that take all settings of the recording or the loop.
 void draw_differences(Parameters& p, const RecordedCoupling& recording, const Parameters& live) {
   const Parameters& recorded = recording.began;
-  bool any = false;
-  for (const ParameterInfo& info : parameter_table()) {
-    const std::string before = parameter_text(recorded, info), after = parameter_text(p, info);
-    if (before == after) continue;
-    const auto shown = [](std::string text) {
-      std::erase(text, '"');
-      return text.empty() ? "the arm's" : text;
-    };
-    read_out(info.caption, fmt::format("{} \xE2\x86\x92 {}", shown(before), shown(after)), {},
-             "Left: the value in the recording. Right: the value in the re-run.");
-    any = true;
+  const auto shown = [](std::string text) {
+    std::erase(text, '"');
+    return text.empty() ? "the arm's" : text;
+  };
+  const std::vector<const ParameterInfo*> changed = differing(recorded, p);
+  for (const ParameterInfo* info : changed) {
+    read_out(info->caption,
+             fmt::format("{} \xE2\x86\x92 {}", shown(parameter_text(recorded, *info)),
+                         shown(parameter_text(p, *info))),
+             {}, "Left: the value in the recording. Right: the value in the re-run.");
   }
-  if (!any) {
+  if (changed.empty()) {
     muted("All settings are as recorded. Change a setting, then press E to see the effect.");
   }
   tell_changes(p, recorded, recording.changed);
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
-  ImGui::BeginDisabled(!any);
+  ImGui::BeginDisabled(changed.empty());
   if (ImGui::Button("As recorded", {half, 0})) p = recorded;
   note_place("As recorded");
   ImGui::EndDisabled();

@@ -176,10 +176,9 @@ void Tuning::follow_lanes() {
 // Marks changes in the plots. Parameters that all lanes share are marked once.
 void Tuning::mark_changes(const Parameters& now, const Parameters& before,
                           const std::string& whose) {
-  for (const ParameterInfo& info : parameter_table()) {
-    if (parameter_text(now, info) == parameter_text(before, info)) continue;
-    if (!whose.empty() && !of_controller(info)) continue;
-    live_.mark(whose + mark_text(info, now), whose + info.key);
+  for (const ParameterInfo* info : differing(now, before)) {
+    if (!whose.empty() && !of_controller(*info)) continue;
+    live_.mark(whose + mark_text(*info, now), whose + info->key);
   }
 }
 

@@ -192,9 +192,8 @@ void Document::note_changes() {
   const bool settings = changed.in1 != now.lanes.end();
   std::string what = scene ? editor_.last_change() : "";
   if (settings) {
-    for (const ParameterInfo& info : parameter_table()) {
-      const bool same = parameter_text(*changed.in1, info) == parameter_text(*changed.in2, info);
-      if (!same) what = scene ? "" : info.key;
+    for (const ParameterInfo* info : differing(*changed.in1, *changed.in2)) {
+      what = scene ? "" : info->key;
     }
   }
   if (settings || scene) history_.changed(known_, what, std::chrono::steady_clock::now());

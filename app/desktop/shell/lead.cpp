@@ -5,6 +5,7 @@
 
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/shell/desktop.h"
+#include "app/run/lane_settings.h"
 
 namespace limpid {
 namespace {
@@ -13,10 +14,9 @@ namespace {
 void take_changes(Parameters& own, const Parameters& now, const Parameters& before,
                   bool of_controller_only) {
   if (now == before) return;
-  for (const ParameterInfo& info : parameter_table()) {
-    if (of_controller_only && !of_controller(info)) continue;
-    if (parameter_text(now, info) == parameter_text(before, info)) continue;
-    set_parameter_number(own, info, parameter_number(now, info));
+  for (const ParameterInfo* info : differing(now, before)) {
+    if (of_controller_only && !of_controller(*info)) continue;
+    set_parameter_number(own, *info, parameter_number(now, *info));
   }
 }
 
